@@ -1,0 +1,80 @@
+"""Back up, verify and restore ladder programs of FATEK/FACON PLCs, and diagnose them.
+
+A library user needs three names::
+
+    import fatektool
+
+    with fatektool.connect("/dev/ttyUSB0", station=1) as plc:
+        program = fatektool.backup(plc)
+
+Everything here is loaded when it is first used, so that ``import fatektool`` costs next to nothing
+and never loads the command line's libraries.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+from fatektool.version import __version__
+
+if TYPE_CHECKING:
+    from fatektool.client import Plc
+    from fatektool.connect import connect
+    from fatektool.errors import FatektoolError
+    from fatektool.jobs.backup import backup
+    from fatektool.jobs.restore import restore
+    from fatektool.jobs.status import read_status
+    from fatektool.jobs.verify import verify
+    from fatektool.program.archive import Backup, load_backup, save_backup
+    from fatektool.program.compare import compare
+    from fatektool.program.image import Header, Program
+    from fatektool.protocol.elements import Element
+
+_HOMES = {
+    "Backup": "fatektool.program.archive",
+    "Element": "fatektool.protocol.elements",
+    "FatektoolError": "fatektool.errors",
+    "Header": "fatektool.program.image",
+    "Plc": "fatektool.client",
+    "Program": "fatektool.program.image",
+    "backup": "fatektool.jobs.backup",
+    "compare": "fatektool.program.compare",
+    "connect": "fatektool.connect",
+    "load_backup": "fatektool.program.archive",
+    "read_status": "fatektool.jobs.status",
+    "restore": "fatektool.jobs.restore",
+    "save_backup": "fatektool.program.archive",
+    "verify": "fatektool.jobs.verify",
+}
+
+__all__ = [
+    "Backup",
+    "Element",
+    "FatektoolError",
+    "Header",
+    "Plc",
+    "Program",
+    "__version__",
+    "backup",
+    "compare",
+    "connect",
+    "load_backup",
+    "read_status",
+    "restore",
+    "save_backup",
+    "verify",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Load a public name from its home when it is first asked for."""
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(importlib.import_module(_HOMES[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(set(globals()) | set(__all__))

@@ -1,0 +1,184 @@
+"""A PLC as an object: a typed method for each command, over a link that keeps answers apart.
+
+All values are plain: discretes are bool, registers unsigned int, pages 128 bytes.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fatektool.batch import ask_all
+from fatektool.errors import PlcError
+from fatektool.protocol.commands import (
+    Control,
+    ControlDiscrete,
+    Loopback,
+    ReadBriefStatus,
+    ReadDetailedStatus,
+    ReadDisabled,
+    ReadDiscretes,
+    ReadMixed,
+    ReadPage,
+    ReadRegisters,
+    RunStop,
+    WriteDiscretes,
+    WriteMixed,
+    WritePage,
+    WriteRegisters,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+    from contextlib import ExitStack
+    from types import TracebackType
+    from typing import Self
+
+    from fatektool.link import Link
+    from fatektool.protocol.elements import Element
+    from fatektool.protocol.status import BriefStatus, DetailedStatus
+
+_MODE_TRIES = 20
+
+
+class Plc:
+    """One PLC: station and line are the link's.
+
+    Every method raises ``LineError`` when no answer can be trusted, and ``PlcRefused`` when the answer is
+    an error code.
+
+    Args:
+        link: exchanges with one station.
+        target: the target as the user named it.
+        resources: closed with the PLC; None if the link is somebody else's.
+    """
+
+    def __init__(self, link: Link, target: str, resources: ExitStack | None = None) -> None:
+        self.link = link
+        self.target = target
+        self._resources = resources
+
+    def close(self) -> None:
+        """Close the line; again is fine."""
+        if self._resources is not None:
+            self._resources.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    # --- status and mode --------------------------------------------------------------------------
+
+    def brief_status(self) -> BriefStatus:
+        """40."""
+        return self.link.ask(ReadBriefStatus())
+
+    def detailed_status(self) -> DetailedStatus:
+        """53."""
+        return self.link.ask(ReadDetailedStatus())
+
+    def run(self) -> None:
+        """41, then read the mode back, as on some lines an acknowledgement proves nothing.
+
+        Raises:
+            PlcError: acknowledged, but the PLC does not run.
+        """
+        self._set_mode(run=True)
+
+    def stop(self) -> None:
+        """41, then read the mode back.
+
+        Raises:
+            PlcError: acknowledged, but the PLC does not stop.
+        """
+        self._set_mode(run=False)
+
+    def _set_mode(self, *, run: bool) -> None:
+        self.link.ask(RunStop(run))
+        clock = self.link.transport.clock
+        deadline = clock() + self.link.timeout_s
+        for _ in range(_MODE_TRIES):  # a PLC may need a scan or two
+            flags = self.brief_status().flags
+            if flags.running == run:
+                return
+            if clock() > deadline:
+                break
+        word, other = ("RUN", "STOP") if run else ("STOP", "RUN")
+        raise PlcError(
+            f"the PLC acknowledged {word}, but its status still says {other}",
+            hint="see 'fatektool status': an emergency stop or the PLC's own switch may hold it",
+        )
+
+    # --- discretes --------------------------------------------------------------------------------
+
+    def disable(self, element: Element) -> None:
+        """42: take a discrete out of the program's hands."""
+        self.link.ask(ControlDiscrete(Control.DISABLE, element))
+
+    def enable(self, element: Element) -> None:
+        """42: give a discrete back to the program."""
+        self.link.ask(ControlDiscrete(Control.ENABLE, element))
+
+    def set(self, element: Element) -> None:
+        """42: switch a discrete on."""
+        self.link.ask(ControlDiscrete(Control.SET, element))
+
+    def reset(self, element: Element) -> None:
+        """42: switch a discrete off."""
+        self.link.ask(ControlDiscrete(Control.RESET, element))
+
+    def read_disabled(self, first: Element, count: int) -> tuple[bool, ...]:
+        """43: True for each of 1 to 256 discretes that is disabled."""
+        return self.link.ask(ReadDisabled(first, count))
+
+    def read_discretes(self, first: Element, count: int) -> tuple[bool, ...]:
+        """44: 1 to 256 discretes."""
+        return self.link.ask(ReadDiscretes(first, count))
+
+    def write_discretes(self, first: Element, values: Iterable[bool]) -> None:
+        """45: 1 to 256 discretes."""
+        self.link.ask(WriteDiscretes(first, tuple(values)))
+
+    # --- registers --------------------------------------------------------------------------------
+
+    def read_registers(self, first: Element, count: int) -> tuple[int, ...]:
+        """46: 1 to 64 words of 16 bits, or 1 to 32 of 32 bits, unsigned."""
+        return self.link.ask(ReadRegisters(first, count))
+
+    def write_registers(self, first: Element, values: Iterable[int]) -> None:
+        """47: 1 to 64 words of 16 bits, or 1 to 32 of 32 bits, unsigned."""
+        self.link.ask(WriteRegisters(first, tuple(values)))
+
+    def read_mixed(self, elements: Iterable[Element]) -> tuple[int, ...]:
+        """48: elements of any kind, at most 64 words in all."""
+        return self.link.ask(ReadMixed(tuple(elements)))
+
+    def write_mixed(self, items: Iterable[tuple[Element, int]]) -> None:
+        """49: elements of any kind with their values, at most 32 words in all."""
+        self.link.ask(WriteMixed(tuple(items)))
+
+    # --- line and program -------------------------------------------------------------------------
+
+    def loopback(self, data: bytes) -> bytes:
+        """4E: what the PLC sends back, which is what it was sent."""
+        return self.link.ask(Loopback(data))
+
+    def read_page(self, page: int) -> bytes:
+        """4F: one page of the program, 128 bytes."""
+        return self.link.ask(ReadPage(page))
+
+    def read_pages(self, pages: Sequence[int], on_page: Callable[[int], None] | None = None) -> list[bytes]:
+        """4F for many pages, none of which can hold another's answer.
+
+        Args:
+            pages: their numbers.
+            on_page: is called with the number of pages read so far.
+        """
+        return ask_all(self.link, [ReadPage(page) for page in pages], on_page)
+
+    def write_page(self, page: int, data: bytes) -> None:
+        """50: one page of the program, 128 bytes."""
+        self.link.ask(WritePage(page, data))

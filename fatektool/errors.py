@@ -1,0 +1,137 @@
+"""Every error the library raises, each with the exit code of its class.
+
+::
+
+    FatektoolError                     70  a fault of fatektool itself
+    ├── UsageError                      2  a bad option or value, a refused question
+    ├── LineError                       3  no or no usable answer, port not there or in use
+    │   ├── TransportError                 the medium failed
+    │   │   ├── TransportTimeout           nothing came in time (one read, not one exchange)
+    │   │   └── TransportClosed            the other side or the cable is gone
+    │   ├── PortBusy                       another process holds the port
+    │   ├── FrameError                     bytes that are no frame
+    │   └── NoAnswer                       an exchange found no answer, retries included
+    ├── PlcError                        4  the PLC is reached and will not or must not
+    │   ├── PlcRefused                     an error code in its answer
+    │   └── PlcNotReady                    RUN where STOP is needed, ROM pack fitted
+    ├── DataError                       5  a file or program that does not hold
+    └── RestoreIncomplete               6  the PLC's program is neither old nor new
+
+A message is one line that says what, where, expected, got and the next step. ``details`` holds the
+same as values for JSON, and ``kind`` is the class's name in snake case.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any, ClassVar
+
+
+class FatektoolError(Exception):
+    """Base of all errors of this project.
+
+    Args:
+        message: one line: what happened, where, what was expected and got.
+        hint: the next step for the person who reads it, as a sentence without its full stop.
+        details: values for a script: JSON types only.
+    """
+
+    exit_code: ClassVar[int] = 70
+
+    def __init__(self, message: str, *, hint: str | None = None, **details: Any) -> None:
+        super().__init__(message)
+        self.message = message
+        self.hint = hint
+        self.details = details
+
+    @property
+    def kind(self) -> str:
+        """The class's name in snake case: ``PlcRefused`` is ``plc_refused``."""
+        return re.sub(r"(?<!^)(?=[A-Z])", "_", type(self).__name__).lower()
+
+    def __str__(self) -> str:
+        return f"{self.message}; {self.hint}" if self.hint else self.message
+
+
+class UsageError(FatektoolError):
+    """What was asked cannot be asked: nothing was sent."""
+
+    exit_code = 2
+
+
+class LineError(FatektoolError):
+    """No or no usable answer; or the port cannot be had."""
+
+    exit_code = 3
+
+
+class TransportError(LineError):
+    """The medium failed: an error of the operating system, in the project's words."""
+
+
+class TransportTimeout(TransportError):
+    """Not one byte came within the time that a single read was given."""
+
+
+class TransportClosed(TransportError):
+    """The connection or the device is gone."""
+
+
+class PortBusy(LineError):
+    """Another process uses the port or gateway."""
+
+
+class FrameError(LineError):
+    """Bytes that are no frame of the protocol.
+
+    Args:
+        message: what is wrong with them.
+        raw: the bytes that were dropped.
+        checksum: True if all but the checksum of a whole frame is right in form.
+    """
+
+    def __init__(self, message: str, *, raw: bytes = b"", checksum: bool = False) -> None:
+        super().__init__(message, raw=raw.hex(" ").upper())
+        self.raw = raw
+        self.checksum = checksum
+
+
+class NoAnswer(LineError):
+    """One exchange and its retries found no answer to trust."""
+
+
+class PlcError(FatektoolError):
+    """The PLC is reached, and will not or must not do what was asked."""
+
+    exit_code = 4
+
+
+class PlcRefused(PlcError):
+    """An error code in the PLC's answer.
+
+    Args:
+        message: what was asked and the code's meaning.
+        code: the error code, 1 to 15.
+        command: the command's code.
+    """
+
+    def __init__(self, message: str, *, code: int, command: int, hint: str | None = None) -> None:
+        super().__init__(message, hint=hint, code=f"{code:X}", command=f"{command:02X}")
+        self.code = code
+        self.command = command
+
+
+class PlcNotReady(PlcError):
+    """The PLC is in a state in which this must not be done."""
+
+
+class DataError(FatektoolError):
+    """A file, program or header that does not hold, or does not fit this PLC."""
+
+    exit_code = 5
+
+
+class RestoreIncomplete(FatektoolError):
+    """The PLC's program is neither the old one nor the new one."""
+
+    exit_code = 6

@@ -1,0 +1,367 @@
+"""One exchange with a PLC: deadline, retry, and never another question's answer.
+
+Answers do not name their question: a 4F answer carries no page number, a 46 answer no register. So after a
+time-out the late answer to page 5 would pass for page 6. What keeps them apart:
+
+- Input is dropped before each request.
+- After any doubt (a time-out, garbage, an answer that nobody asked for) a **fence** is put up before the next
+  request: a loopback (4E) with a fresh nonce. All that comes before its echo is dropped, and only the exact
+  nonce brings the fence down: an older fence's echo does not.
+- A two-wire line may echo every byte. The echo of most requests can be told from any answer by its content;
+  that of 4E, STOP and RUN cannot. So before the first of those it is learned, from a request of the former
+  kind, whether this line echoes; from then on the first copy is the echo and the second the answer.
+- A write whose answer was lost is read back before it is sent again.
+
+``suspicions`` counts what could mean that an earlier answer was taken for another's: input that nobody asked
+for. Whoever sends many requests of one kind puts up a fence at the end and reads again what stands in doubt:
+that is ``batch.ask_all``.
+
+Deadline of one try = wire time of request and longest answer at this baud + the PLC's time.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeVar
+
+from fatektool.errors import (
+    FrameError,
+    LineError,
+    NoAnswer,
+    PlcRefused,
+    TransportClosed,
+    TransportError,
+    TransportTimeout,
+    UsageError,
+)
+from fatektool.protocol.commands import Command, Loopback, ReadBriefStatus
+from fatektool.protocol.read_back import read_back
+from fatektool.transport.base import no_note
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fatektool.protocol.codec import Codec, Frame
+    from fatektool.protocol.commands import Request
+    from fatektool.transport.base import LineSettings, Transport
+
+A = TypeVar("A")
+
+_READ_BYTES = 4096
+_SILENT_TRIES_BEFORE_RENEWAL = 2
+
+
+@dataclass(slots=True)
+class Counters:
+    """What was seen on the line so far."""
+
+    exchanges: int = 0
+    timeouts: int = 0
+    checksum_errors: int = 0
+    garbled: int = 0
+    strays: int = 0
+    echoes: int = 0
+    fences: int = 0
+    bytes_heard: int = 0
+
+
+class Link:
+    """Exchanges with one station over one transport.
+
+    Args:
+        transport: the medium, open.
+        codec: the protocol.
+        station: 1 to 254.
+        line: speed and format, for wire times; over TCP and UDP that of the line behind the gateway.
+        timeout_s: the PLC's time to answer, beside wire time.
+        retries: further tries of one exchange.
+        nonces: gives the fences' nonces, never the same twice; for tests.
+        note: is told what a curious user may want to know.
+    """
+
+    def __init__(
+        self,
+        transport: Transport,
+        codec: Codec,
+        station: int,
+        line: LineSettings,
+        *,
+        timeout_s: float = 0.5,
+        retries: int = 3,
+        nonces: Callable[[], bytes] = lambda: os.urandom(4).hex().upper().encode(),
+        note: Callable[[str], None] = no_note,
+    ) -> None:
+        if not 1 <= station <= 254:
+            raise UsageError(
+                f"station: expected 1 to 254, got {station}", hint="0 is broadcast: no PLC answers it"
+            )
+        self.transport = transport
+        self.codec = codec
+        self.station = station
+        self.timeout_s = timeout_s
+        self.retries = retries
+        self.counters = Counters()
+        self.suspicions = 0
+        self._byte_time_s = line.byte_time_s
+        self._decoder = codec.decoder()
+        self._nonces = nonces
+        self._note = note
+        self._doubt = False
+        self._echoes: bool | None = None
+        self._owed = 0  # requests without an answer since the last fence: as many may still come
+        self._silent_tries = 0
+        self._loopback_answered = False
+        self._heard = ""
+
+    # --- what others call -------------------------------------------------------------------------
+
+    def ask(self, request: Request[A]) -> A:
+        """Send a request and give its answer, with retries.
+
+        Raises:
+            NoAnswer: no try found an answer to trust.
+            PlcRefused: the answer is an error code.
+        """
+        failure: LineError | None = None
+        for _ in range(self.retries + 1):
+            try:
+                self._prepare(request)
+                return self._exchange(request)
+            except (TransportError, FrameError) as error:
+                failure = error
+            except NoAnswer as error:  # the fence stays up: the line is dead
+                raise self._no_answer(request, failure or error) from error
+            if request.writes and self._took(request):
+                return None  # type: ignore[return-value]  # a write's answer is None
+        raise self._no_answer(request, failure)
+
+    def fence(self) -> None:
+        """Make sure that no answer to an earlier request can come any more.
+
+        Raises:
+            NoAnswer: the PLC does not answer the loopback.
+            PlcRefused: it refuses it.
+        """
+        failure: LineError | None = None
+        nonce = Loopback(b"")
+        for _ in range(max(1, self.retries)):
+            nonce = Loopback(self._nonces())
+            try:
+                if self._echoes is None:
+                    self._exchange(ReadBriefStatus())  # learns whether the line echoes
+                if self._echoes is None:  # something else on the line: not learned
+                    continue
+                self._exchange(nonce)
+            except (TransportError, FrameError) as error:
+                failure = error
+                continue
+            self._loopback_answered = True
+            self._doubt = False
+            self._owed = 0
+            self.counters.fences += 1
+            return
+        raise self._no_answer(nonce, failure)
+
+    def closing_fence(self) -> None:
+        """A fence behind the last of many requests.
+
+        A PLC that never answered a loopback is let off with a note: with nothing astray before, what is lost
+        is the proof, not the answers.
+        """
+        self._drop_input()
+        try:
+            self.fence()
+        except (NoAnswer, PlcRefused):
+            if self._loopback_answered:
+                raise
+            self._note("this PLC answers no loopback (4E): a late answer to an earlier request could pass")
+            self._doubt = False
+            self._owed = 0
+
+    def broadcast(self, request: Request[None]) -> None:
+        """Send a request to every PLC on the line (station 0). Nobody answers."""
+        self.transport.write(self.codec.encode(0, request))
+
+    # --- one try ----------------------------------------------------------------------------------
+
+    def _prepare(self, request: Request[A]) -> None:
+        """Drop input, and put up a fence if there is any doubt."""
+        self._drop_input()
+        if self._doubt:
+            self.fence()
+        elif self._echoes is None and self.codec.echo_may_pass(request):
+            self._exchange(ReadBriefStatus())
+
+    def _exchange(self, request: Request[A]) -> A:
+        """Send a request once and wait for its answer.
+
+        Raises:
+            TransportTimeout, TransportClosed, FrameError: this try has failed, and left a doubt.
+            PlcRefused: the answer is an error code.
+        """
+        raw = self.codec.encode(self.station, request)
+        size = self.codec.answer_bytes(request)
+        self._heard = ""
+        self.counters.exchanges += 1
+        try:
+            self.transport.write(raw)
+            deadline = self.transport.clock() + (len(raw) + size) * self._byte_time_s + self.timeout_s
+            return self._await(request, raw, size, deadline)
+        except TransportTimeout:
+            self.counters.timeouts += 1
+            self._lost()
+            if not self._heard:
+                self._silent_tries += 1
+                if self._silent_tries >= _SILENT_TRIES_BEFORE_RENEWAL:
+                    self._silent_tries = 0
+                    self.transport.renew()
+            raise
+        except (TransportClosed, FrameError):
+            self._lost()
+            raise
+
+    def _lost(self) -> None:
+        self._doubt = True
+        self._owed += 1
+
+    def _await(self, request: Request[A], raw: bytes, size: int, deadline: float) -> A:
+        echo_due = self._echoes is True
+        bad = self.counters.garbled + self.counters.checksum_errors
+        while True:
+            frame = self._next_frame(size, deadline)
+            if frame.raw == raw and (echo_due or not self.codec.echo_may_pass(request)):
+                self._hear_echo()
+                echo_due = False
+            elif frame.station != self.station or frame.command != request.command:
+                self._stray_frame(frame)
+            else:
+                try:
+                    answer = self.codec.parse_answer(request, frame)
+                except FrameError as error:
+                    self._heard = error.message
+                    self._stray_frame(frame)
+                    continue
+                if isinstance(request, Loopback) and answer != request.data:
+                    self._heard = "another loopback's answer"
+                    self.counters.strays += 1
+                    self._doubt = True
+                    continue
+                self._silent_tries = 0
+                clean = bad == self.counters.garbled + self.counters.checksum_errors
+                if self._echoes is None and clean and not self.codec.echo_may_pass(request):
+                    self._echoes = False
+                return answer
+
+    def _next_frame(self, size: int, deadline: float) -> Frame:
+        """The next whole frame; bad bytes on the way are dropped and counted."""
+        while True:
+            try:
+                frame = self._decoder.next_frame()
+            except FrameError as error:
+                self._bad_bytes(error)
+                if error.checksum and len(error.raw) == size:  # the answer, damaged: no use in waiting
+                    raise
+                continue
+            if frame is not None:
+                return frame
+            rest = deadline - self.transport.clock()
+            if rest <= 0:
+                raise TransportTimeout(f"{self.transport.name}: no answer in time")
+            try:
+                data = self.transport.read(_READ_BYTES, rest)
+            except TransportTimeout:
+                continue
+            self.counters.bytes_heard += len(data)
+            self._decoder.feed(data)
+
+    # --- what belongs to no request ---------------------------------------------------------------
+
+    def _bad_bytes(self, error: FrameError) -> None:
+        self._doubt = True
+        if error.checksum:
+            self.counters.checksum_errors += 1
+            self._heard = f"a damaged frame ({error.message})"
+        else:
+            self.counters.garbled += 1
+            self._heard = self._heard or f"{len(error.raw)} bytes that are no frame"
+
+    def _stray_frame(self, frame: Frame) -> None:
+        """A good frame that answers nothing asked now."""
+        self.counters.strays += 1
+        self._doubt = True
+        if frame.station != self.station:
+            self._heard = f"station {frame.station} instead"
+            return
+        self._heard = self._heard or f"an answer to another command ({frame.command:02X})"
+        if frame.command == Command.LOOPBACK:
+            return  # an old fence, which can be told from everything else
+        if self._owed:
+            self._owed -= 1
+        else:
+            self.suspicions += 1
+
+    def _drop_input(self) -> None:
+        """Input found before a request: look at it, as it may tell of an answer that went astray."""
+        left = self._decoder.clear()
+        stray = self.transport.drain()
+        if not left and not stray:
+            return
+        self.counters.bytes_heard += len(stray)
+        self._doubt = True
+        if left:
+            self.suspicions += 1
+        self._decoder.feed(stray)
+        while True:
+            try:
+                frame = self._decoder.next_frame()
+            except FrameError as error:
+                self._bad_bytes(error)
+                self.suspicions += 1
+                continue
+            if frame is None:
+                break
+            self._stray_frame(frame)
+        if self._decoder.clear():
+            self.suspicions += 1
+
+    def _hear_echo(self) -> None:
+        self.counters.echoes += 1
+        self._heard = "its own request only (the line echoes)"
+        if self._echoes is False:  # fences so far may have been their own echo
+            self._doubt = True
+            self.suspicions += 1
+        self._echoes = True
+
+    # --- after a failure --------------------------------------------------------------------------
+
+    def _took(self, request: Request[A]) -> bool:
+        """Read back a write whose answer was lost."""
+        question, took = read_back(request)  # type: ignore[arg-type]  # request.writes: its answer is None
+        try:
+            return took(self.ask(question))
+        except PlcRefused:
+            return False
+
+    def _no_answer(self, request: Request[A], failure: LineError | None) -> LineError:
+        if isinstance(failure, TransportClosed):
+            return failure
+        heard = f"heard {self._heard}" if self._heard else "nothing heard"
+        where = f"{self.transport.name} ({self.transport.line or self.codec.name})"
+        return NoAnswer(
+            f"no answer from station {self.station} on {where} to '{request.command.words}' "
+            f"({request.command:02X}) in {self.retries + 1} tries of {self.timeout_s:g} s: {heard}",
+            hint=self._advice(),
+            station=self.station,
+            target=self.transport.name,
+            heard=self._heard or None,
+        )
+
+    def _advice(self) -> str:
+        if "station" in self._heard:
+            return "check --station"
+        if "own request" in self._heard:
+            return "the PLC is silent: is it on, are A and B the right way round, is the station right?"
+        if self._heard:
+            return "check --baud, --format and --protocol, and the line's termination and shield"
+        return "is the PLC on and the cable in? Check station, baud and format (factory: station 1, 9600 7E1)"

@@ -1,0 +1,250 @@
+"""The backup file, ``fatektool.backup/1``: JSON with one page a line, so that ``git diff`` shows pages.
+
+Keys in this order::
+
+    schema created tool source{target station protocol line} plc{status system}
+    header{valid signature ladder_words} ladder_words page_count passes sha256 pages[256 hex digits, …]
+
+``sha256`` is of all pages' bytes in order. Whatever reads a backup gets it checked to the last byte: a file
+that does not hold is refused, naming what and where, before anything is done with it.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+from fatektool.errors import DataError
+from fatektool.program.files import read_bounded, write_whole
+from fatektool.program.image import PAGE_BYTES, Program, page_count
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+SCHEMA: Final = "fatektool.backup/1"
+_MAX_FILE: Final = 4 << 20  # the largest image takes 270 kB
+_PAGE: Final = re.compile(r"[0-9A-Fa-f]{256}", re.ASCII)
+_TIME: Final = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?Z", re.ASCII)
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """Where a program was read.
+
+    Attributes:
+        target: as the user named it.
+        station: 1 to 254.
+        protocol: ``facon``.
+        line: port parameters, ``9600 7E1``; None where there are none.
+    """
+
+    target: str
+    station: int
+    protocol: str
+    line: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class Backup:
+    """A program with where and when it was read.
+
+    Attributes:
+        program: the image.
+        created: UTC, RFC 3339.
+        tool: name and version of the program that wrote it.
+        source: where it was read.
+        plc: the status document's ``status`` and ``system``.
+        passes: how often the program was read, 2 or more if it was compared.
+    """
+
+    program: Program
+    created: str
+    tool: str
+    source: Source
+    plc: dict[str, Any]
+    passes: int
+
+    @property
+    def header_document(self) -> dict[str, Any]:
+        """The header as the file has it."""
+        header = self.program.header
+        return {
+            "valid": not self.program.header_faults,
+            "signature": header.signature,
+            "ladder_words": header.ladder_words,
+        }
+
+    def to_bytes(self) -> bytes:
+        """The file's bytes."""
+        program = self.program
+        head = {
+            "schema": SCHEMA,
+            "created": self.created,
+            "tool": self.tool,
+            "source": {
+                "target": self.source.target,
+                "station": self.source.station,
+                "protocol": self.source.protocol,
+                "line": self.source.line,
+            },
+            "plc": self.plc,
+            "header": self.header_document,
+            "ladder_words": program.ladder_words,
+            "page_count": len(program.pages),
+            "passes": self.passes,
+            "sha256": program.sha256,
+        }
+        text = json.dumps(head, indent=1, allow_nan=False).removesuffix("\n}")
+        pages = ",\n".join(f'  "{page.hex().upper()}"' for page in program.pages)
+        return f'{text},\n "pages": [\n{pages}\n ]\n}}\n'.encode()
+
+    @classmethod
+    def parse(cls, data: bytes, name: str = "backup") -> Backup:
+        """Read and check a backup file's bytes.
+
+        Args:
+            data: the bytes.
+            name: the file's name, for messages.
+
+        Raises:
+            DataError: anything does not hold.
+        """
+        try:
+            return _Reader(name).backup(_json(data, name))
+        except DataError as error:
+            error.details.setdefault("file", name)
+            raise
+
+
+def save_backup(backup: Backup, path: Path, *, overwrite: bool = False) -> None:
+    """Write a backup file, whole or not at all.
+
+    Raises:
+        UsageError: it exists and ``overwrite`` is False, or the place cannot be written.
+        DataError: the disk is full or broken.
+    """
+    write_whole(path, backup.to_bytes(), overwrite=overwrite)
+
+
+def load_backup(path: Path) -> Backup:
+    """Read and check a backup file.
+
+    Raises:
+        UsageError: there is no such file.
+        DataError: it is damaged or none of ours.
+    """
+    return Backup.parse(read_bounded(path, _MAX_FILE), str(path))
+
+
+def _json(data: bytes, name: str) -> dict[str, Any]:
+    def pairs(items: list[tuple[str, Any]]) -> dict[str, Any]:
+        found = dict(items)
+        if len(found) != len(items):
+            raise ValueError("a key stands twice")
+        return found
+
+    def constant(text: str) -> Any:
+        raise ValueError(f"{text} is no JSON")
+
+    try:
+        document = json.loads(data.decode(), object_pairs_hook=pairs, parse_constant=constant)
+    except (ValueError, RecursionError) as error:  # UnicodeDecodeError and JSONDecodeError among them
+        reason = "too deep" if isinstance(error, RecursionError) else error
+        raise DataError(f"{name}: not a backup file: {reason}", hint="is it the right file?") from error
+    if not isinstance(document, dict) or document.get("schema") != SCHEMA:
+        got = document.get("schema") if isinstance(document, dict) else type(document).__name__
+        raise DataError(
+            f"{name}: not a backup file of this version: expected schema {SCHEMA!r}, got {_short(got)}",
+            hint="is it the right file?",
+        )
+    return document
+
+
+class _Reader:
+    """Takes a document apart, and says what does not hold."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+
+    def backup(self, document: dict[str, Any]) -> Backup:
+        ladder_words = self.number(document, "ladder_words", 1, 0xFFFF)
+        program = Program(ladder_words, self.pages(document, ladder_words))
+        found = Backup(
+            program=program,
+            created=self.text(document, "created"),
+            tool=self.text(document, "tool"),
+            source=self.source(self.part(document, "source")),
+            plc=self.part(document, "plc"),
+            passes=self.number(document, "passes", 1, 1000),
+        )
+        self.same("sha256", program.sha256, self.text(document, "sha256").lower())
+        header = self.part(document, "header")
+        for key, value in found.header_document.items():
+            self.same(f"header.{key} (page 0)", value, header.get(key))
+        if not _TIME.fullmatch(found.created):
+            raise self.fault("created: expected a UTC time such as 2026-11-22T03:15:00Z", found.created)
+        system = self.part(found.plc, "system", "plc.")
+        self.part(found.plc, "status", "plc.")
+        self.same("plc.system.ladder_words", ladder_words, system.get("ladder_words"))
+        return found
+
+    def pages(self, document: dict[str, Any], ladder_words: int) -> tuple[bytes, ...]:
+        pages = document.get("pages")
+        if not isinstance(pages, list):
+            raise self.fault("pages: expected an array", pages)
+        expected = page_count(ladder_words)
+        self.same("page_count", expected, self.number(document, "page_count", 0, 1 << 32))
+        if len(pages) != expected:
+            raise self.fault(f"pages: expected {expected} for {ladder_words} words", len(pages))
+        for number, page in enumerate(pages):
+            if not isinstance(page, str) or not _PAGE.fullmatch(page):
+                error = self.fault(f"page {number}: expected {2 * PAGE_BYTES} hex digits", page)
+                error.details["page"] = number
+                raise error
+        return tuple(bytes.fromhex(page) for page in pages)
+
+    def source(self, part: dict[str, Any]) -> Source:
+        line = part.get("line")
+        if line is not None and not isinstance(line, str):
+            raise self.fault("source.line: expected a text or null", line)
+        return Source(
+            self.text(part, "target", "source."),
+            self.number(part, "station", 1, 254, "source."),
+            self.text(part, "protocol", "source."),
+            line,
+        )
+
+    def part(self, document: dict[str, Any], key: str, where: str = "") -> dict[str, Any]:
+        value = document.get(key)
+        if not isinstance(value, dict):
+            raise self.fault(f"{where}{key}: expected an object", value)
+        return value
+
+    def text(self, document: dict[str, Any], key: str, where: str = "") -> str:
+        value = document.get(key)
+        if not isinstance(value, str):
+            raise self.fault(f"{where}{key}: expected a text", value)
+        return value
+
+    def number(self, document: dict[str, Any], key: str, first: int, last: int, where: str = "") -> int:
+        value = document.get(key)
+        if not isinstance(value, int) or isinstance(value, bool) or not first <= value <= last:
+            raise self.fault(f"{where}{key}: expected a whole number of {first} to {last}", value)
+        return value
+
+    def same(self, what: str, expected: object, got: object) -> None:
+        if expected != got or type(expected) is not type(got):
+            raise self.fault(f"{what}: expected {expected!r} from the pages", got)
+
+    def fault(self, what: str, got: object) -> DataError:
+        return DataError(
+            f"{self.name}: {what}, got {_short(got)}",
+            hint="the file is damaged or was edited: take another backup",
+        )
+
+
+def _short(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:40]}… ({len(text)} characters)"

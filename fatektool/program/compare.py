@@ -1,0 +1,84 @@
+"""Two programs' differences, by page and word."""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from fatektool.program.image import PAGE_WORDS
+
+if TYPE_CHECKING:
+    from fatektool.program.image import Program
+
+
+@dataclass(frozen=True, slots=True)
+class WordDifference:
+    """One word that differs.
+
+    Attributes:
+        word: its place in the page, 0 to 63.
+        a: the word in the first program, 0 to 65535.
+        b: the same in the second.
+    """
+
+    word: int
+    a: int
+    b: int
+
+
+@dataclass(frozen=True, slots=True)
+class PageDifference:
+    """One page that differs. ``words`` is empty for a page that only one of the two programs has."""
+
+    page: int
+    words: tuple[WordDifference, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Two programs side by side.
+
+    Attributes:
+        a_ladder_words: ladder size of the first.
+        b_ladder_words: ladder size of the second.
+        pages: the pages that differ, in order.
+    """
+
+    a_ladder_words: int
+    b_ladder_words: int
+    pages: tuple[PageDifference, ...]
+
+    @property
+    def same(self) -> bool:
+        """True if the two are the same to the byte."""
+        return not self.pages and self.a_ladder_words == self.b_ladder_words
+
+    @property
+    def page_numbers(self) -> list[int]:
+        """The numbers of the pages that differ."""
+        return [page.page for page in self.pages]
+
+    @property
+    def word_count(self) -> int:
+        """How many words differ, in the pages that both have."""
+        return sum(len(page.words) for page in self.pages)
+
+
+def compare(a: Program, b: Program) -> Comparison:
+    """Compare two programs, page by page."""
+    pages = []
+    for number in range(max(len(a.pages), len(b.pages))):
+        ours = a.pages[number] if number < len(a.pages) else None
+        theirs = b.pages[number] if number < len(b.pages) else None
+        if ours != theirs:
+            words = () if ours is None or theirs is None else compare_pages(ours, theirs)
+            pages.append(PageDifference(number, words))
+    return Comparison(a.ladder_words, b.ladder_words, tuple(pages))
+
+
+def compare_pages(a: bytes, b: bytes) -> tuple[WordDifference, ...]:
+    """The words in which two pages of 128 bytes differ."""
+    form = f">{PAGE_WORDS}H"
+    pairs = zip(struct.unpack(form, a), struct.unpack(form, b), strict=True)
+    return tuple(WordDifference(word, x, y) for word, (x, y) in enumerate(pairs) if x != y)

@@ -1,0 +1,144 @@
+"""Files that appear whole or not at all.
+
+The order of a commit, and what a crash leaves::
+
+    1. write a temporary file in the same folder     a crash leaves it behind, FILE as it was
+    2. fsync it                                      the same
+    3. link it to FILE (new) or rename it (replace)  FILE is whole
+    4. fsync the folder                              FILE survives a power cut
+
+A symlink is followed: the file that it names is replaced, not the link. Files are made with the user's
+umask and never wider than 0640, as a program is somebody's property.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import os
+import secrets
+from pathlib import Path
+
+from fatektool.errors import DataError, FatektoolError, UsageError
+
+_MODE = 0o640
+
+
+def require_place(path: Path, *, overwrite: bool) -> Path:
+    """Check, before any work is done, that a file can be written here; give the path it really has.
+
+    Raises:
+        UsageError: it exists and is to be kept, its folder is not there or not writable, it is a folder.
+    """
+    real = Path(os.path.realpath(path))
+    try:
+        if real.is_dir():
+            raise UsageError(f"{path} is a folder, expected a file name", file=str(path))
+        if real.exists() and not overwrite:
+            raise exists_already(path)
+        if not real.parent.is_dir():
+            raise UsageError(f"folder {real.parent} does not exist", hint="make it first", file=str(path))
+        if not os.access(real.parent, os.W_OK):
+            raise UsageError(
+                f"folder {real.parent} is not writable", hint="choose another place", file=str(path)
+            )
+    except (OSError, ValueError) as error:
+        raise file_error("look at", path, error) from error
+    return real
+
+
+def write_whole(path: Path, data: bytes, *, overwrite: bool) -> None:
+    """Write a file so that it is whole or absent, on disk when this returns.
+
+    Raises:
+        UsageError: it exists and ``overwrite`` is False, or its folder cannot be written.
+        DataError: the disk is full or broken; the file is as it was.
+    """
+    real = require_place(path, overwrite=overwrite)
+    temporary = real.parent / f".fatektool-{secrets.token_hex(6)}.tmp"
+    try:
+        _write_synced(temporary, data)
+        if overwrite:
+            temporary.replace(real)
+        else:
+            _put_new(temporary, real)
+        _sync_folder(real.parent)
+    except FileExistsError as error:
+        raise exists_already(path) from error
+    except OSError as error:
+        raise file_error("write", path, error) from error
+    finally:
+        with contextlib.suppress(OSError):
+            temporary.unlink(missing_ok=True)
+
+
+def read_bounded(path: Path, limit: int) -> bytes:
+    """Read a whole file of at most ``limit`` bytes.
+
+    Raises:
+        UsageError: there is no such file, or it may not be read.
+        DataError: it is larger, or the disk is broken.
+    """
+    try:
+        with path.open("rb") as file:
+            data = file.read(limit + 1)
+    except (OSError, ValueError) as error:
+        raise file_error("read", path, error) from error
+    if len(data) > limit:
+        raise DataError(f"{path}: expected at most {limit} bytes, got more", file=str(path))
+    return data
+
+
+def exists_already(path: Path) -> UsageError:
+    """The refusal to replace a file."""
+    return UsageError(
+        f"{path} exists already and is kept", hint="choose another name, or --force", file=str(path)
+    )
+
+
+def file_error(what: str, path: Path, error: OSError | ValueError) -> FatektoolError:
+    """An error of the file system in the project's words.
+
+    A place that cannot be used is a usage error; a disk that fails is a data error.
+    """
+    reason = getattr(error, "strerror", None) or str(error)
+    message = f"cannot {what} {path}: {reason}"
+    number = getattr(error, "errno", None)
+    if number in {errno.ENOSPC, errno.EDQUOT}:
+        return DataError(message, hint="make room and run it again; nothing was changed", file=str(path))
+    if number == errno.EIO:
+        return DataError(message, hint="check the disk", file=str(path))
+    return UsageError(message, hint="check the name and its rights", file=str(path))
+
+
+def _write_synced(path: Path, data: bytes) -> None:
+    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+    with os.fdopen(os.open(path, flags, _MODE), "wb") as file:
+        file.write(data)
+        file.flush()
+        os.fsync(file.fileno())
+
+
+def _put_new(temporary: Path, real: Path) -> None:
+    """Give the file its name unless another has it; without hard links (FAT, Windows) by rename."""
+    try:
+        os.link(temporary, real)
+    except FileExistsError:
+        raise
+    except OSError:
+        if real.exists():
+            raise FileExistsError(errno.EEXIST, "exists", str(real)) from None
+        temporary.rename(real)
+
+
+def _sync_folder(folder: Path) -> None:
+    if os.name == "nt":  # a folder cannot be opened there
+        return
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    except OSError as error:
+        if error.errno not in {errno.EINVAL, errno.ENOTSUP}:  # file systems that cannot
+            raise
+    finally:
+        os.close(descriptor)

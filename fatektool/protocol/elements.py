@@ -1,0 +1,130 @@
+"""Elements of a PLC: ``R12``, ``WY8``, ``DR2`` and back.
+
+An element is a kind and an address. The kinds fall into three widths (FACON paper, section 4.1)::
+
+    1 bit    X Y M S T C                    a discrete
+    16 bits  WX WY WM WS WT WC              16 discretes, address a multiple of 8, next one 16 on
+             RT RC R D F                    a register, next one 1 on
+    32 bits  DWX DWY DWM DWS DWT DWC        32 discretes, address a multiple of 8, next one 32 on
+             DRT DRC DR DD DF               two registers, low word first, next one 2 on
+
+Addresses are decimal. The ranges are the largest of any model: a PLC answers error A past its own.
+F is named by the M-series paper only.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Final
+
+from fatektool.errors import UsageError
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """A kind of element.
+
+    Attributes:
+        symbol: one to three capital letters.
+        bits: width of one element: 1, 16 or 32.
+        stride: how far apart the addresses of consecutive elements are.
+        step: an address is a multiple of this.
+        last: the largest address of any model.
+        digits: how many digits FACON writes an address with.
+    """
+
+    symbol: str
+    bits: int
+    stride: int
+    step: int
+    last: int
+    digits: int
+
+    @property
+    def words(self) -> int:
+        """What one element counts against the limits of 46 to 49: a discrete 1, 32 bits 2."""
+        return 2 if self.bits == 32 else 1
+
+
+def _kinds() -> dict[str, Kind]:
+    kinds: dict[str, Kind] = {}
+    for symbol in "XYMSTC":
+        kinds[symbol] = Kind(symbol, 1, 1, 1, 9999, 4)
+        kinds[f"W{symbol}"] = Kind(f"W{symbol}", 16, 16, 8, 9984, 4)
+        kinds[f"DW{symbol}"] = Kind(f"DW{symbol}", 32, 32, 8, 9968, 4)
+    for symbol, last, digits in (
+        ("RT", 9999, 4),
+        ("RC", 9999, 4),
+        ("R", 65535, 5),
+        ("D", 65535, 5),
+        ("F", 65535, 5),
+    ):
+        kinds[symbol] = Kind(symbol, 16, 1, 1, last, digits)
+        kinds[f"D{symbol}"] = Kind(f"D{symbol}", 32, 2, 1, last - 1, digits)
+    return kinds
+
+
+KINDS: Final[dict[str, Kind]] = _kinds()
+
+_WRITTEN = re.compile(r"([A-Za-z]{1,3})([0-9]{1,5})", re.ASCII)
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Element:
+    """One element: ``Element("R", 12)``, written ``R12``.
+
+    Raises:
+        UsageError: an unknown symbol, an address past the largest of any model, or one that is not a
+            multiple of the kind's step.
+    """
+
+    symbol: str
+    address: int
+
+    def __post_init__(self) -> None:
+        kind = KINDS.get(self.symbol)
+        if kind is None:
+            raise UsageError(
+                f"unknown element kind {self.symbol!r}: expected one of {' '.join(KINDS)}",
+                element=f"{self.symbol}{self.address}",
+            )
+        if not 0 <= self.address <= kind.last:
+            raise UsageError(
+                f"element {self}: address out of range: expected 0 to {kind.last}, got {self.address}",
+                element=str(self),
+            )
+        if self.address % kind.step:
+            below = self.address - self.address % kind.step
+            raise UsageError(
+                f"element {self}: expected an address that is a multiple of {kind.step}, got {self.address}",
+                hint=f"{self.symbol}{below} holds {self.symbol[-1]}{self.address}",
+                element=str(self),
+            )
+
+    @property
+    def kind(self) -> Kind:
+        """The element's kind."""
+        return KINDS[self.symbol]
+
+    def __str__(self) -> str:
+        return f"{self.symbol}{self.address}"
+
+    def after(self, count: int) -> Element:
+        """The element ``count`` places on: ``WY8`` after 1 is ``WY24``, ``DR0`` after 1 is ``DR2``."""
+        return Element(self.symbol, self.address + count * self.kind.stride)
+
+    @classmethod
+    def parse(cls, text: str) -> Element:
+        """Read an element as people write it: ``R12``, ``x0016``, ``DWM0``.
+
+        Raises:
+            UsageError: it is no element.
+        """
+        match = _WRITTEN.fullmatch(text.strip())
+        if match is None:
+            raise UsageError(
+                f"{text!r} is no element: expected a symbol and a decimal address such as R12, X16 or DWM0",
+                element=text,
+            )
+        return cls(match[1].upper(), int(match[2]))

@@ -1,0 +1,167 @@
+r"""FACON ASCII frames, both ways the same form (FACON paper, section 2).
+
+::
+
+    STX(02) · station(2 hex) · command(2 hex) · data(0..500) · LRC(2 hex) · ETX(03)
+
+The LRC is the sum of all bytes from STX to the last of the data, modulo 256, in two capital hex digits.
+
+The decoder's strategy: hunt for STX, then for ETX. STX never stands inside a frame, so a second one
+before ETX begins a new frame and what stood before it is dropped: a good frame behind a bad one is
+never lost. A frame that passes 508 bytes without ETX is dropped.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, TypeVar
+
+from fatektool.errors import FrameError, UsageError
+from fatektool.protocol import facon_data
+from fatektool.protocol.codec import Frame
+
+if TYPE_CHECKING:
+    from fatektool.protocol.commands import Request
+
+A = TypeVar("A")
+
+STX: Final = b"\x02"
+ETX: Final = b"\x03"
+FRAMING_BYTES: Final = 8  # STX, station, command, LRC, ETX
+MAX_DATA: Final = 500
+MAX_FRAME: Final = FRAMING_BYTES + MAX_DATA
+LAST_STATION: Final = 0xFE
+_MAX_BUFFER: Final = 1 << 16
+
+_PAIRS: Final = [b"%02X" % value for value in range(256)]
+_VALUES: Final = {pair: value for value, pair in enumerate(_PAIRS)}
+
+
+def lrc(data: bytes) -> bytes:
+    """The checksum of everything from STX to the last data byte, as two hex digits."""
+    return _PAIRS[sum(data) & 0xFF]
+
+
+def frame_bytes(station: int, command: int, data: bytes) -> bytes:
+    """One frame.
+
+    Args:
+        station: 0 to 254; 0 is everyone, and nobody answers.
+        command: the command's code.
+        data: 0 to 500 characters without STX and ETX.
+
+    Raises:
+        UsageError: a station or data that no frame can carry.
+    """
+    if not 0 <= station <= LAST_STATION:
+        raise UsageError(f"station: expected 0 to {LAST_STATION}, got {station}")
+    if len(data) > MAX_DATA:
+        raise UsageError(f"frame data: expected at most {MAX_DATA} characters, got {len(data)}")
+    if STX in data or ETX in data:
+        raise UsageError("frame data: STX (02) and ETX (03) cannot stand inside a FACON frame")
+    body = b"\x02%b%b%b" % (_PAIRS[station], _PAIRS[command], data)
+    return b"%b%b\x03" % (body, _PAIRS[sum(body) & 0xFF])
+
+
+class FaconDecoder:
+    """Cuts FACON frames out of a stream, whatever its chunks."""
+
+    def __init__(self) -> None:
+        self._buffer = bytearray()
+
+    def feed(self, data: bytes) -> None:
+        """Take bytes from the wire; of more than 64 KiB not asked for, the oldest are forgotten."""
+        self._buffer += data
+        if len(self._buffer) > _MAX_BUFFER:
+            del self._buffer[:-_MAX_BUFFER]
+
+    def clear(self) -> int:
+        """Forget what was fed and not yet given; return how many bytes that was."""
+        count = len(self._buffer)
+        self._buffer.clear()
+        return count
+
+    def next_frame(self) -> Frame | None:
+        """Give the next frame, or None when more bytes are needed.
+
+        Raises:
+            FrameError: bad bytes, dropped.
+        """
+        buffer = self._buffer
+        if not buffer:
+            return None
+        start = buffer.find(STX)
+        if start:
+            raise FrameError("noise outside a frame", raw=self._take(start if start > 0 else len(buffer)))
+        end = buffer.find(ETX, 1)
+        again = buffer.find(STX, 1, end if end > 0 else len(buffer))
+        if again > 0:
+            raise FrameError("a frame broke off and another began", raw=self._take(again))
+        if end < 0:
+            if len(buffer) >= MAX_FRAME:
+                raise FrameError(f"no end within {MAX_FRAME} bytes", raw=self._take(len(buffer)))
+            return None
+        return parse_frame(self._take(end + 1))
+
+    def _take(self, count: int) -> bytes:
+        taken = bytes(self._buffer[:count])
+        del self._buffer[:count]
+        return taken
+
+
+def parse_frame(raw: bytes) -> Frame:
+    """Read one frame from STX to ETX.
+
+    Raises:
+        FrameError: a wrong checksum (then ``checksum`` is True), or no frame.
+    """
+    if not FRAMING_BYTES <= len(raw) <= MAX_FRAME or raw[:1] != STX or raw[-1:] != ETX:
+        raise FrameError(
+            f"no frame: expected STX, {FRAMING_BYTES} to {MAX_FRAME} bytes, ETX; got {len(raw)} bytes",
+            raw=raw,
+        )
+    station = _VALUES.get(raw[1:3])
+    command = _VALUES.get(raw[3:5])
+    if station is None or command is None:
+        raise FrameError("station or command is not two capital hex digits", raw=raw)
+    expected = lrc(raw[:-3])
+    if raw[-3:-1] != expected:
+        got = raw[-3:-1].decode("latin-1")
+        raise FrameError(f"checksum: expected {expected.decode()}, got {got!r}", raw=raw, checksum=True)
+    return Frame(station, command, raw[5:-3], raw)
+
+
+class FaconCodec:
+    """FACON ASCII as a ``Codec``."""
+
+    name: Final = "facon"
+
+    def decoder(self) -> FaconDecoder:
+        """A new decoder for one stream."""
+        return FaconDecoder()
+
+    def encode(self, station: int, request: Request[A]) -> bytes:
+        """The request as one frame for this station."""
+        return frame_bytes(station, request.command, facon_data.request_data(request))
+
+    def parse_request(self, frame: Frame) -> Request[object]:
+        """The request that a frame holds."""
+        return facon_data.parse_request(frame.command, frame.data)
+
+    def parse_answer(self, request: Request[A], frame: Frame) -> A:
+        """What a frame answers to this request."""
+        return facon_data.parse_answer(request, frame.data)
+
+    def encode_answer(self, station: int, request: Request[A], answer: A) -> bytes:
+        """The frame in which a PLC gives this answer."""
+        return frame_bytes(station, request.command, facon_data.answer_data(request, answer))
+
+    def answer_bytes(self, request: Request[A]) -> int:
+        """Length of the frame that answers this request, in bytes."""
+        return FRAMING_BYTES + facon_data.answer_chars(request)
+
+    def echo_may_pass(self, request: Request[A]) -> bool:
+        """True if the request's own echo could be taken for its answer."""
+        return facon_data.echo_may_pass(request)
+
+
+FACON: Final = FaconCodec()

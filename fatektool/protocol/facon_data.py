@@ -1,0 +1,351 @@
+"""The data field of each FACON command, request and answer, both ways (FACON paper, section 4.2).
+
+One row of ``_FIELDS`` a command. An answer begins with the error character, ``0`` for none; any other
+stands alone. Two commands differ: 4E answers the very data it was sent, and 4F and 53 are drawn without
+the error character in the paper's figures but with it in its example, so both are taken, told apart by
+length.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar, cast
+
+from fatektool.errors import FrameError, PlcRefused, UsageError
+from fatektool.protocol.commands import (
+    PAGE_BYTES,
+    Command,
+    Control,
+    ControlDiscrete,
+    Loopback,
+    ReadBriefStatus,
+    ReadDetailedStatus,
+    ReadDisabled,
+    ReadDiscretes,
+    ReadMixed,
+    ReadPage,
+    ReadRegisters,
+    Request,
+    RunStop,
+    WriteDiscretes,
+    WriteMixed,
+    WritePage,
+    WriteRegisters,
+)
+from fatektool.protocol.facon_text import (
+    CHARS,
+    HEX_DIGITS,
+    bits_text,
+    count_text,
+    element_text,
+    nothing_after,
+    take_bits,
+    take_count,
+    take_element,
+    take_run,
+    take_value,
+    take_words,
+    to_hex,
+    unhex,
+    value_text,
+    words_text,
+)
+from fatektool.protocol.plc_errors import refusal
+from fatektool.protocol.status import BRIEF_BYTES, DETAILED_BYTES, BriefStatus, DetailedStatus
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fatektool.protocol.elements import Element
+
+A = TypeVar("A")
+
+_NO_ERROR: Final = b"0"
+
+
+def _parse_read_run(
+    make: Callable[[Element, int], Request[Any]], *, zero_is_256: bool
+) -> Callable[[bytes], Request[Any]]:
+    def parse(data: bytes) -> Request[Any]:
+        element, count, rest = take_run(data, zero_is_256=zero_is_256)
+        nothing_after(rest)
+        return make(element, count)
+
+    return parse
+
+
+# --- requests -------------------------------------------------------------------------------------
+
+
+def _parse_empty(make: Callable[[], Request[Any]]) -> Callable[[bytes], Request[Any]]:
+    def parse(data: bytes) -> Request[Any]:
+        nothing_after(data)
+        return make()
+
+    return parse
+
+
+def _parse_run_stop(data: bytes) -> RunStop:
+    if data not in {b"0", b"1"}:
+        raise FrameError("expected 1 (run) or 0 (stop)", raw=data)
+    return RunStop(data == b"1")
+
+
+def _parse_control(data: bytes) -> ControlDiscrete:
+    if data[:1] not in {b"1", b"2", b"3", b"4"}:
+        raise FrameError("expected 1 disable, 2 enable, 3 set or 4 reset", raw=data)
+    element, at = take_element(data, 1)
+    nothing_after(data[at:])
+    return ControlDiscrete(Control(int(data[:1])), element)
+
+
+def _parse_write_discretes(data: bytes) -> WriteDiscretes:
+    element, count, rest = take_run(data, zero_is_256=True)
+    if len(rest) != count:
+        raise FrameError(f"expected {count} values, got {len(rest)}", raw=rest)
+    return WriteDiscretes(element, take_bits(rest))
+
+
+def _parse_write_registers(data: bytes) -> WriteRegisters:
+    element, count, rest = take_run(data, zero_is_256=False)
+    values = take_words(rest, element.kind.bits)
+    if len(values) != count:
+        raise FrameError(f"expected {count} values, got {len(values)}", raw=rest)
+    return WriteRegisters(element, values)
+
+
+def _parse_read_mixed(data: bytes) -> ReadMixed:
+    elements = []
+    at = 2
+    for _ in range(take_count(data)):
+        element, at = take_element(data, at)
+        elements.append(element)
+    nothing_after(data[at:])
+    return ReadMixed(tuple(elements))
+
+
+def _parse_write_mixed(data: bytes) -> WriteMixed:
+    items = []
+    at = 2
+    for _ in range(take_count(data)):
+        element, at = take_element(data, at)
+        end = at + CHARS[element.kind.bits]
+        if end > len(data):
+            raise FrameError(f"the value of {element} is cut off", raw=data)
+        items.append((element, take_value(element, data[at:end])))
+        at = end
+    nothing_after(data[at:])
+    return WriteMixed(tuple(items))
+
+
+def _parse_page_number(data: bytes) -> int:
+    page = unhex(data[:4])
+    if len(page) != 2:
+        raise FrameError("expected a page number of 4 hex digits", raw=data)
+    return int.from_bytes(page, "big")
+
+
+def _parse_read_page(data: bytes) -> ReadPage:
+    nothing_after(data[4:])
+    return ReadPage(_parse_page_number(data))
+
+
+def _parse_write_page(data: bytes) -> WritePage:
+    return WritePage(_parse_page_number(data), unhex(data[4:]))
+
+
+# --- answers --------------------------------------------------------------------------------------
+
+
+def _take_mixed(request: ReadMixed, chars: bytes) -> tuple[int, ...]:
+    values = []
+    at = 0
+    for element in request.elements:
+        end = at + CHARS[element.kind.bits]
+        values.append(take_value(element, chars[at:end]))
+        at = end
+    return tuple(values)
+
+
+def _mixed_values(request: ReadMixed, values: tuple[int, ...]) -> bytes:
+    return b"".join(map(value_text, request.elements, values))
+
+
+def _brief_bytes(answer: BriefStatus) -> bytes:
+    flags = answer.flags
+    byte = sum(getattr(flags, name) << bit for bit, name in enumerate(flags.__slots__))
+    return bytes([byte, answer.status2, answer.status3])
+
+
+class _Fields(NamedTuple):
+    """How one command is written. ``chars`` counts an answer's characters after the error character."""
+
+    request: Callable[[Any], bytes]
+    parse_request: Callable[[bytes], Request[Any]]
+    chars: Callable[[Any], int]
+    parse_answer: Callable[[Any, bytes], Any]
+    answer: Callable[[Any, Any], bytes]
+
+
+def _acknowledged(request: Callable[[Any], bytes], parse_request: Callable[[bytes], Request[Any]]) -> _Fields:
+    return _Fields(request, parse_request, lambda _: 0, lambda _r, _c: None, lambda _r, _a: b"")
+
+
+def _read_bits(make: Callable[[Element, int], Request[Any]]) -> _Fields:
+    return _Fields(
+        lambda r: count_text(r.count) + element_text(r.first),
+        _parse_read_run(make, zero_is_256=True),
+        lambda r: int(r.count),
+        lambda _, chars: take_bits(chars),
+        lambda _, values: bits_text(values),
+    )
+
+
+_FIELDS: Final[dict[int, _Fields]] = {
+    Command.BRIEF_STATUS: _Fields(
+        lambda _: b"",
+        _parse_empty(ReadBriefStatus),
+        lambda _: 2 * BRIEF_BYTES,
+        lambda _, chars: BriefStatus.parse(unhex(chars)),
+        lambda _, answer: to_hex(_brief_bytes(answer)),
+    ),
+    Command.RUN_STOP: _acknowledged(lambda r: b"1" if r.run else b"0", _parse_run_stop),
+    Command.CONTROL_DISCRETE: _acknowledged(
+        lambda r: b"%d%b" % (r.control, element_text(r.element)), _parse_control
+    ),
+    Command.READ_DISABLED: _read_bits(ReadDisabled),
+    Command.READ_DISCRETES: _read_bits(ReadDiscretes),
+    Command.WRITE_DISCRETES: _acknowledged(
+        lambda r: count_text(len(r.values)) + element_text(r.first) + bits_text(r.values),
+        _parse_write_discretes,
+    ),
+    Command.READ_REGISTERS: _Fields(
+        lambda r: count_text(r.count) + element_text(r.first),
+        _parse_read_run(ReadRegisters, zero_is_256=False),
+        lambda r: r.count * CHARS[r.first.kind.bits],
+        lambda r, chars: take_words(chars, r.first.kind.bits),
+        lambda r, values: words_text(values, r.first.kind.bits),
+    ),
+    Command.WRITE_REGISTERS: _acknowledged(
+        lambda r: count_text(len(r.values)) + element_text(r.first) + words_text(r.values, r.first.kind.bits),
+        _parse_write_registers,
+    ),
+    Command.READ_MIXED: _Fields(
+        lambda r: count_text(len(r.elements)) + b"".join(map(element_text, r.elements)),
+        _parse_read_mixed,
+        lambda r: sum(CHARS[element.kind.bits] for element in r.elements),
+        _take_mixed,
+        _mixed_values,
+    ),
+    Command.WRITE_MIXED: _acknowledged(
+        lambda r: count_text(len(r.items)) + b"".join(element_text(e) + value_text(e, v) for e, v in r.items),
+        _parse_write_mixed,
+    ),
+    Command.LOOPBACK: _Fields(
+        lambda r: bytes(r.data),
+        Loopback,
+        lambda r: len(r.data) - 1,  # no error character
+        lambda _, chars: chars,
+        lambda _, data: bytes(data),
+    ),
+    Command.READ_PAGE: _Fields(
+        lambda r: b"%04X" % r.page,
+        _parse_read_page,
+        lambda _: 2 * PAGE_BYTES,
+        lambda _, chars: unhex(chars),
+        lambda _, data: to_hex(data),
+    ),
+    Command.WRITE_PAGE: _acknowledged(lambda r: b"%04X%b" % (r.page, to_hex(r.data)), _parse_write_page),
+    Command.DETAILED_STATUS: _Fields(
+        lambda _: b"",
+        _parse_empty(ReadDetailedStatus),
+        lambda _: 2 * DETAILED_BYTES,
+        lambda _, chars: DetailedStatus.parse(unhex(chars)),
+        lambda _, answer: to_hex(answer.raw),
+    ),
+}
+
+_ERROR_CHARACTER_MAY_LACK: Final = {Command.READ_PAGE, Command.DETAILED_STATUS}
+
+
+# --- the four ways --------------------------------------------------------------------------------
+
+
+def request_data(request: Request[A]) -> bytes:
+    """The data field of a request."""
+    return _FIELDS[request.command].request(request)
+
+
+def parse_request(command: int, data: bytes) -> Request[object]:
+    """The request that a data field holds.
+
+    Raises:
+        FrameError: an unknown command, or data that no request of it has.
+    """
+    fields = _FIELDS.get(command)
+    if fields is None:
+        raise FrameError(f"command {command:02X} is not in the paper", raw=data)
+    try:
+        return fields.parse_request(data)
+    except UsageError as error:
+        raise FrameError(error.message, raw=data) from error
+
+
+def answer_chars(request: Request[A]) -> int:
+    """How many data characters the good answer to a request has, error character included."""
+    return 1 + _FIELDS[request.command].chars(request)
+
+
+def parse_answer(request: Request[A], data: bytes) -> A:
+    """What an answer's data field says to this request.
+
+    Raises:
+        PlcRefused: an error code.
+        FrameError: no answer to this request, by length or content.
+    """
+    command = request.command
+    fields = _FIELDS[command]
+    chars = 1 + fields.chars(request)
+    one_letter_loopback = command == Command.LOOPBACK and chars == 1
+    if len(data) == 1 and data != _NO_ERROR and data in HEX_DIGITS and not one_letter_loopback:
+        raise refusal(int(data, 16), command, asked(request))
+    if command == Command.LOOPBACK:
+        return cast("A", data)
+    if len(data) == chars:
+        if not data.startswith(_NO_ERROR):
+            raise FrameError(f"expected the error character 0 before the data, got {data[:1]!r}", raw=data)
+        return cast("A", fields.parse_answer(request, data[1:]))
+    if command in _ERROR_CHARACTER_MAY_LACK and len(data) == chars - 1:
+        return cast("A", fields.parse_answer(request, data))
+    raise FrameError(
+        f"answer to {asked(request)}: expected {chars} characters of data, got {len(data)}", raw=data
+    )
+
+
+def answer_data(request: Request[A], answer: A) -> bytes:
+    """The data field of the answer to a request, error character included but for 4E."""
+    data = _FIELDS[request.command].answer(request, answer)
+    return data if request.command == Command.LOOPBACK else _NO_ERROR + data
+
+
+def echo_may_pass(request: Request[A]) -> bool:
+    """True if a request's own data reads as an answer to it.
+
+    The echo of 4E, of STOP and of some 48 reads as a good answer, that of RUN as error 1.
+    """
+    try:
+        parse_answer(request, request_data(request))
+    except FrameError:
+        return False
+    except PlcRefused:
+        return True
+    return True
+
+
+def asked(request: Request[A]) -> str:
+    """What a request asks, in words: ``read program page 5``, ``read registers R12``."""
+    words = request.command.words
+    for name in ("page", "first", "element"):
+        subject = getattr(request, name, None)
+        if subject is not None:
+            return f"{words} {subject}"
+    return words

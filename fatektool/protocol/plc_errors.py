@@ -1,0 +1,56 @@
+"""The error codes of a PLC's answer, in words, with what to do next.
+
+FACON paper, section 3; the M-series paper has the same codes but 3.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from fatektool.errors import PlcRefused
+from fatektool.protocol.commands import Command
+
+MEANINGS: Final = {
+    0x2: "illegal value",
+    0x3: "write prohibited, a ROM pack is fitted",
+    0x4: "illegal format or command, or the command cannot be executed now",
+    0x5: "cannot run, ladder checksum error",
+    0x6: "cannot run, the PLC's ID differs from the ladder's ID",
+    0x7: "cannot run, syntax error in the program",
+    0x9: "cannot run, an instruction of the program is not supported by this PLC",
+    0xA: "illegal address, past what this PLC has",
+}
+
+_NEXT: Final = {
+    0x3: "take the ROM pack out, or write the ROM pack itself",
+    0x5: "restore a good backup: the program in the PLC is damaged",
+    0x6: "the program was locked to a PLC with another ID: load one made for this PLC, or set the ID",
+    0x7: "restore a backup that ran on this PLC",
+    0x9: "the program was made for a newer or larger model: check the model with 'fatektool status'",
+    0xA: "'fatektool status' shows how many of each element this PLC has",
+}
+
+_PROGRAM_NEXT: Final = (
+    "this PLC may not offer its program over the link (the FBs papers no longer list 4F and 50): "
+    "use the vendor's program, or check for a password"
+)
+
+
+def refusal(code: int, command: int, asked: str) -> PlcRefused:
+    """The exception for an error code.
+
+    Args:
+        code: 1 to 15.
+        command: the command's code.
+        asked: what was asked, in words: ``read program page 5``.
+    """
+    hint = _NEXT.get(code)
+    if code in {0x2, 0x4} and command in {Command.READ_PAGE, Command.WRITE_PAGE}:
+        hint = _PROGRAM_NEXT
+    meaning = MEANINGS.get(code, "a code that no paper lists")
+    return PlcRefused(
+        f"the PLC refused to {asked} ({command:02X}): error {code:X}, {meaning}",
+        code=code,
+        command=command,
+        hint=hint,
+    )

@@ -1,0 +1,136 @@
+"""Status bytes as values: the brief status of 40 and the detailed status of 53.
+
+::
+
+    40   byte 1 flags · 2 model · 3 reserved
+    53   byte 1 flags · 2 main unit type · 3 main unit points · 4 OS version, a digit a nibble
+         5-6 ladder size in words · 7-8 discrete inputs · 9-10 discrete outputs
+         11-12 analog inputs · 13-14 analog outputs · 15-16 M · 17-18 S · 19-20 L
+         21-22 R · 23-24 D · 25-26 timers · 27-28 counters · 29-64 reserved
+
+16-bit values come high byte first (FACON paper, section 4.2, commands 40 and 53). A code that no
+paper names is shown as a code: real units answer with such.
+"""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+from typing import Final
+
+from fatektool.errors import FrameError
+
+BRIEF_BYTES: Final = 3
+DETAILED_BYTES: Final = 64
+
+MODELS: Final = {
+    0xFF: "FB, 8K steps",
+    0x53: "FBE, 8K steps",
+    0x54: "FBE, 13K steps",
+    0x55: "FBN, 8K steps",
+    0x56: "FBN, 13K steps",
+}
+UNIT_TYPES: Final = {0x00: "MA/MU", 0x01: "MC"}
+POINTS_FB: Final = {0x01: 20, 0x02: 28, 0x03: 40}
+POINTS_FBS: Final = {0x00: 10, 0x01: 14, 0x02: 20, 0x03: 24, 0x04: 32, 0x05: 40, 0x06: 60}
+FBS_OS_MAJOR: Final = 4
+
+_COUNTS: Final = struct.Struct(">12H")
+
+
+@dataclass(frozen=True, slots=True)
+class StatusFlags:
+    """Status byte 1, the same in 40 and 53, bit 0 first."""
+
+    running: bool
+    battery_low: bool
+    ladder_checksum_error: bool
+    rom_pack: bool
+    watchdog_timeout: bool
+    id_set: bool
+    emergency_stop: bool
+
+    @classmethod
+    def parse(cls, byte: int) -> StatusFlags:
+        """Read the seven flags of one byte; bit 7 is reserved."""
+        return cls(*(bool(byte >> bit & 1) for bit in range(7)))
+
+
+@dataclass(frozen=True, slots=True)
+class BriefStatus:
+    """The answer to 40."""
+
+    flags: StatusFlags
+    status2: int
+    status3: int
+
+    @property
+    def model(self) -> str | None:
+        """The model that status byte 2 names, None for a code the paper does not list."""
+        return MODELS.get(self.status2)
+
+    @classmethod
+    def parse(cls, data: bytes) -> BriefStatus:
+        """Read the three bytes of a 40 answer.
+
+        Raises:
+            FrameError: not three bytes.
+        """
+        if len(data) != BRIEF_BYTES:
+            raise FrameError(f"brief status: expected {BRIEF_BYTES} bytes, got {len(data)}", raw=data)
+        return cls(StatusFlags.parse(data[0]), data[1], data[2])
+
+
+@dataclass(frozen=True, slots=True)
+class System:
+    """What a PLC is and has, bytes 2 to 28 of 53: the part of it that does not change by itself."""
+
+    unit_type: int
+    main_unit_points: int
+    os_version: str
+    ladder_words: int
+    discrete_inputs: int
+    discrete_outputs: int
+    analog_inputs: int
+    analog_outputs: int
+    m_relays: int
+    s_relays: int
+    l_relays: int
+    r_registers: int
+    d_registers: int
+    timers: int
+    counters: int
+
+    @property
+    def unit_type_name(self) -> str | None:
+        """``MA/MU`` or ``MC``, None for a code the paper leaves open."""
+        return UNIT_TYPES.get(self.unit_type)
+
+    @property
+    def points(self) -> int | None:
+        """I/O points of the main unit; FBs units (OS 4 and later) count by a table of their own."""
+        major = self.os_version.partition(".")[0]
+        newer = major.isdigit() and int(major) >= FBS_OS_MAJOR
+        return (POINTS_FBS if newer else POINTS_FB).get(self.main_unit_points)
+
+
+@dataclass(frozen=True, slots=True)
+class DetailedStatus:
+    """The answer to 53; ``raw`` keeps all 64 bytes, the reserved ones too."""
+
+    flags: StatusFlags
+    system: System
+    raw: bytes
+
+    @classmethod
+    def parse(cls, data: bytes) -> DetailedStatus:
+        """Read the 64 bytes of a 53 answer.
+
+        Raises:
+            FrameError: not 64 bytes.
+        """
+        if len(data) != DETAILED_BYTES:
+            raise FrameError(f"detailed status: expected {DETAILED_BYTES} bytes, got {len(data)}", raw=data)
+        version = data[3]
+        system = System(data[1], data[2], f"{version >> 4:X}.{version & 15:X}", *_COUNTS.unpack_from(data, 4))
+        return cls(StatusFlags.parse(data[0]), system, bytes(data))

@@ -1,0 +1,1 @@
+"""Media that carry bytes to a PLC: one small class each, all with the same four methods."""

@@ -1,0 +1,134 @@
+"""What a medium is to the rest of the house, and how long a byte takes on a serial line.
+
+Contract of a transport:
+
+- ``read`` gives at least one byte, or raises ``TransportTimeout`` (now and then before its time: whoever
+  waits looks at the clock) or ``TransportClosed``;
+- ``write`` writes all, in one piece;
+- ``drain`` gives what lies in the input already, without waiting;
+- ``close`` may be called twice.
+
+Errors of the operating system become the project's here and nowhere else.
+"""
+
+from __future__ import annotations
+
+import re
+import time
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from fatektool.errors import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import TracebackType
+    from typing import Self
+
+WRITE_TIMEOUT_S: Final = 5.0
+"""How long a medium may refuse to take a request: a flow control that never lets go, a dead pty."""
+
+DRAIN_LIMIT: Final = 1 << 16
+"""A line that babbles on is not drained for ever."""
+
+_FORMAT: Final = re.compile(r"([5678])([NEOMS])(1|1\.5|2)", re.ASCII)
+
+
+@dataclass(frozen=True, slots=True)
+class LineSettings:
+    """A serial line's speed and format; the factory setting of all these PLCs is 9600 7E1.
+
+    Raises:
+        UsageError: a speed or format that no line has.
+    """
+
+    baud: int = 9600
+    format: str = "7E1"
+
+    def __post_init__(self) -> None:
+        if not 50 <= self.baud <= 4_000_000:
+            raise UsageError(f"baud: expected 50 to 4000000, got {self.baud}")
+        if not _FORMAT.fullmatch(self.format):
+            raise UsageError(
+                f"line format: expected data bits, parity and stop bits such as 7E1 or 8N1, "
+                f"got {self.format!r}"
+            )
+
+    @property
+    def data_bits(self) -> int:
+        """5 to 8."""
+        return int(self.format[0])
+
+    @property
+    def parity(self) -> str:
+        """One of N E O M S."""
+        return self.format[1]
+
+    @property
+    def stop_bits(self) -> float:
+        """1, 1.5 or 2."""
+        return float(self.format[2:])
+
+    @property
+    def byte_time_s(self) -> float:
+        """Seconds that one byte takes on the wire: start bit, data, parity, stop bits."""
+        return (1 + self.data_bits + (self.parity != "N") + self.stop_bits) / self.baud
+
+    def __str__(self) -> str:
+        return f"{self.baud} {self.format}"
+
+
+def no_note(_: str) -> None:
+    """What is told to nobody."""
+
+
+class Transport(ABC):
+    """A medium that carries bytes to a PLC and back.
+
+    Attributes:
+        name: the medium in words, for messages.
+        clock: the clock by which its time-outs run, in seconds.
+        line: port parameters in words for a serial line, else None.
+    """
+
+    name: str
+    line: str | None = None
+    clock: Callable[[], float] = staticmethod(time.monotonic)
+
+    @abstractmethod
+    def read(self, max_bytes: int, timeout_s: float) -> bytes:
+        """Read 1 to ``max_bytes`` bytes, whatever is there first; a datagram comes whole.
+
+        Raises:
+            TransportTimeout: nothing came within ``timeout_s`` seconds.
+            TransportClosed: the other side or the device is gone.
+        """
+
+    @abstractmethod
+    def write(self, data: bytes) -> None:
+        """Write all of ``data``.
+
+        Raises:
+            TransportTimeout: the medium takes no bytes.
+            TransportClosed: the other side or the device is gone.
+        """
+
+    @abstractmethod
+    def drain(self) -> bytes:
+        """Take what lies in the input already; empty if nothing does, or the medium is gone."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Close the medium; again is fine."""
+
+    def renew(self) -> None:  # noqa: B027  # most media have nothing to renew
+        """Start afresh after a long silence: a connection is made anew at the next write."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()

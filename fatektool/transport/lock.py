@@ -1,0 +1,160 @@
+"""One process a line: a lock that dies with its process.
+
+Frames of two programs on one line would answer each other's questions, so a port or gateway is used by one
+process at a time. The lock is the operating system's (``flock``; on Windows a locked byte), on a small file
+whose content names the holder for the one who waits. It goes with the process, however that ends: a file left
+behind means nothing, and cron is never stopped by one.
+
+The file is made for all users to lock: one port, one file, whoever asks.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import hashlib
+import os
+import re
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from fatektool.errors import PortBusy, UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+if sys.platform == "win32":
+    import msvcrt
+else:
+    import fcntl
+
+_POLL_S: Final = 0.05
+_SHARED: Final = ("/run/lock", "/var/lock")
+_PAST_THE_TEXT: Final = 4096
+_held: set[str] = set()
+
+
+def lock_folder() -> Path:
+    """Where lock files lie: the system's shared folder for them, else the one for temporary files."""
+    named = os.environ.get("FATEKTOOL_LOCK_DIR")
+    if named:
+        return Path(named)
+    for folder in _SHARED:
+        if os.access(folder, os.W_OK | os.X_OK):
+            return Path(folder)
+    return Path(tempfile.gettempdir())
+
+
+class PortLock:
+    """The right of this process to use one port or gateway.
+
+    Args:
+        resource: what is locked, the same for everyone who means it: a device's real path, ``ip:port``.
+        wait_s: how long to wait for another process.
+        clock: seconds; for tests.
+        sleep: waits so many seconds; for tests.
+    """
+
+    def __init__(
+        self,
+        resource: str,
+        wait_s: float,
+        *,
+        clock: Callable[[], float] = time.monotonic,
+        sleep: Callable[[float], None] = time.sleep,
+    ) -> None:
+        self.resource = resource
+        self._wait_s = wait_s
+        self._clock = clock
+        self._sleep = sleep
+        readable = re.sub(r"[^A-Za-z0-9.]+", "-", resource)[-60:].strip("-")
+        digest = hashlib.sha256(resource.encode(errors="surrogateescape")).hexdigest()[:10]
+        self.path = lock_folder() / f"fatektool-{readable}-{digest}.lock"
+        self._descriptor: int | None = None
+
+    def acquire(self) -> None:
+        """Take the lock, waiting if need be.
+
+        Raises:
+            PortBusy: another process (or another part of this one) has it and keeps it.
+        """
+        deadline = self._clock() + self._wait_s
+        while not self._try():
+            if self._clock() >= deadline:
+                raise self._busy()
+            self._sleep(_POLL_S)
+
+    def release(self) -> None:
+        """Give the lock back; again is fine."""
+        if self._descriptor is not None:
+            with contextlib.suppress(OSError):
+                os.ftruncate(self._descriptor, 0)
+            os.close(self._descriptor)
+            self._descriptor = None
+            _held.discard(str(self.path))
+
+    def _try(self) -> bool:
+        if str(self.path) in _held:
+            return False
+        descriptor = self._open()
+        try:
+            _lock(descriptor)
+        except OSError as error:
+            os.close(descriptor)
+            if error.errno in {errno.EAGAIN, errno.EACCES, errno.EWOULDBLOCK, errno.EDEADLK}:
+                return False
+            raise UsageError(f"cannot lock {self.path}: {error.strerror}") from error
+        self._descriptor = descriptor
+        _held.add(str(self.path))
+        with contextlib.suppress(OSError):  # another user's file is locked without being written
+            os.ftruncate(descriptor, 0)
+            os.write(descriptor, f"{os.getpid()}\n".encode())
+        return True
+
+    def _open(self) -> int:
+        flags = os.O_RDWR | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_CLOEXEC", 0)
+        try:
+            try:
+                descriptor = os.open(self.path, flags | os.O_CREAT | os.O_EXCL, 0o666)
+                with contextlib.suppress(OSError, AttributeError):
+                    os.fchmod(descriptor, 0o666)  # the umask would keep other users out
+            except FileExistsError:
+                try:
+                    descriptor = os.open(self.path, flags)
+                except PermissionError:
+                    descriptor = os.open(self.path, flags & ~os.O_RDWR)
+        except OSError as error:
+            raise UsageError(
+                f"cannot make the lock file {self.path}: {error.strerror}",
+                hint="name another folder in FATEKTOOL_LOCK_DIR",
+            ) from error
+        return descriptor
+
+    def holder(self) -> int | None:
+        """The process that holds the lock, as far as its file tells."""
+        try:
+            return int(self.path.read_bytes()[:20])
+        except (OSError, ValueError):
+            return None
+
+    def _busy(self) -> PortBusy:
+        pid = self.holder()
+        who = f"process {pid}" if pid else "another process"
+        return PortBusy(
+            f"{self.resource} is in use by {who}: waited {self._wait_s:g} s",
+            hint=f"let it end{f' or stop process {pid}' if pid else ''}, or wait longer with --lock-wait",
+            holder=pid,
+            resource=self.resource,
+        )
+
+
+def _lock(descriptor: int) -> None:
+    if sys.platform == "win32":
+        os.lseek(descriptor, _PAST_THE_TEXT, os.SEEK_SET)
+        msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
+        os.lseek(descriptor, 0, os.SEEK_SET)
+    else:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -1,0 +1,68 @@
+"""A line within the process, on a clock of its own: no byte waits for real time.
+
+The other side is anything with ``receive``: it takes bytes and the time, and gives what will come back, each
+piece with its due time. The simulator's line is one. Waiting is moving the clock, so that time-outs, slow
+answers and paced lines are exact and cost nothing.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import Protocol
+
+from fatektool.errors import TransportClosed, TransportTimeout
+from fatektool.transport.base import Transport
+
+
+class Peer(Protocol):
+    """The other side of a line."""
+
+    def receive(self, data: bytes, now: float) -> list[tuple[float, bytes]]:
+        """Take bytes at this time; give what comes back, each piece with its due time, in order."""
+
+
+class MemoryTransport(Transport):
+    """A line to a peer in this process.
+
+    Args:
+        peer: the other side.
+        name: the target, for messages.
+    """
+
+    def __init__(self, peer: Peer, name: str = "sim:") -> None:
+        self.name = name
+        self._peer = peer
+        self._now = 0.0
+        self._coming: deque[tuple[float, bytes]] = deque()
+        self._closed = False
+        self.clock = lambda: self._now
+
+    def read(self, max_bytes: int, timeout_s: float) -> bytes:
+        """Give the next piece if it is due in time, else move the clock by the time-out."""
+        if self._closed:
+            raise TransportClosed(f"{self.name}: closed")
+        if not self._coming or self._coming[0][0] > self._now + timeout_s:
+            self._now += max(0.0, timeout_s)
+            raise TransportTimeout(f"{self.name}: nothing came within {timeout_s:.3f} s")
+        due, data = self._coming.popleft()
+        self._now = max(self._now, due)
+        if len(data) > max_bytes:
+            self._coming.appendleft((due, data[max_bytes:]))
+        return data[:max_bytes]
+
+    def write(self, data: bytes) -> None:
+        """Hand bytes to the peer."""
+        if self._closed:
+            raise TransportClosed(f"{self.name}: closed")
+        self._coming.extend(self._peer.receive(data, self._now))
+
+    def drain(self) -> bytes:
+        """Take the pieces that are due by now."""
+        taken = bytearray()
+        while self._coming and self._coming[0][0] <= self._now:
+            taken += self._coming.popleft()[1]
+        return bytes(taken)
+
+    def close(self) -> None:
+        """Close the line."""
+        self._closed = True

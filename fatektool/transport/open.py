@@ -1,0 +1,69 @@
+"""From a target to an open transport, locked for this process.
+
+Each medium's file is loaded only when its kind of target is named.
+"""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+from fatektool.errors import UsageError
+from fatektool.transport.base import no_note
+from fatektool.transport.lock import PortLock
+from fatektool.transport.target import Target, TargetKind
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from contextlib import ExitStack
+
+    from fatektool.transport.base import LineSettings, Transport
+
+
+def open_transport(
+    target: Target,
+    line: LineSettings,
+    stack: ExitStack,
+    *,
+    lock_wait_s: float = 10.0,
+    note: Callable[[str], None] = no_note,
+) -> Transport:
+    """Lock a serial port, TCP or UDP target and open it.
+
+    Args:
+        target: where; anything but a simulated PLC.
+        line: speed and format of a serial port.
+        stack: closes the transport and gives the lock back when it ends.
+        lock_wait_s: how long to wait for another process.
+        note: is told what a curious user may want to know.
+
+    Raises:
+        LineError: it cannot be opened; PortBusy among them.
+        UsageError: a target that is no medium.
+    """
+    if target.kind is TargetKind.SERIAL:
+        from fatektool.transport.serial_port import open_serial
+
+        named = target.is_url or os.name == "nt"  # COM3 is a name, not a path
+        device = target.path.upper() if named else os.path.realpath(target.path)
+        _lock(device, lock_wait_s, stack)
+        return stack.enter_context(open_serial(target.path, line, note=note))
+    if target.kind in {TargetKind.TCP, TargetKind.UDP}:
+        from fatektool.transport.sockets import resolve
+
+        address = resolve(target.host, target.port)
+        _lock(f"{address[0]}:{address[1]}", lock_wait_s, stack)
+        if target.kind is TargetKind.TCP:
+            from fatektool.transport.tcp import TcpTransport
+
+            return stack.enter_context(TcpTransport(target.text, address))
+        from fatektool.transport.udp import UdpTransport
+
+        return stack.enter_context(UdpTransport(target.text, address))
+    raise UsageError(f"target {target.text!r} is no line that can be opened here")
+
+
+def _lock(resource: str, wait_s: float, stack: ExitStack) -> None:
+    lock = PortLock(resource, wait_s)
+    lock.acquire()
+    stack.callback(lock.release)

@@ -1,0 +1,232 @@
+"""A serial port, by pyserial: a device, or any of pyserial's URLs.
+
+A device on Linux or macOS is read and written through its file descriptor, waiting by ``poll``: setting
+pyserial's time-out anew for each read would reconfigure the port each time. Other ports (Windows, URLs) keep
+one short time-out for good, and longer ones are made of it.
+
+A pseudo terminal has neither parity nor 7 bits, and Linux refuses such a format from its second opening
+on, so it is opened as 8N1: nothing is lost, as a pty's bytes pass whole.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import os
+import sys
+from typing import TYPE_CHECKING, Any, Final
+
+from fatektool.errors import LineError, PortBusy, TransportClosed, TransportTimeout
+from fatektool.transport.base import DRAIN_LIMIT, WRITE_TIMEOUT_S, LineSettings, Transport, no_note
+from fatektool.transport.wait import readable, writable
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+_SLICE_S: Final = 0.02
+_PTY: Final = LineSettings(9600, "8N1")
+
+
+def open_serial(
+    target: str, line: LineSettings, *, low_latency: bool = True, note: Callable[[str], None] = no_note
+) -> Transport:
+    """Open a serial port for this process alone.
+
+    Args:
+        target: a device or a pyserial URL.
+        line: speed and format.
+        low_latency: on Linux, ask the driver not to hold received bytes back (a USB adapter otherwise adds
+            up to 16 ms to each exchange).
+        note: is told what a curious user may want to know.
+
+    Raises:
+        PortBusy: another program has the port open.
+        LineError: the port is not there, may not be used, or does not take this speed or format.
+    """
+    pty = _is_pty(target)
+    if pty:
+        note(f"{target} is a pseudo terminal, which has no {line.format}: opened as 8N1")
+    port = _open(target, _PTY if pty else line)
+    if low_latency and not pty and sys.platform == "linux" and "://" not in target:
+        try:
+            port.set_low_latency_mode(True)
+        except (ValueError, OSError, NotImplementedError) as error:
+            note(f"{target}: the driver has no low latency mode: {error}")
+    if hasattr(port, "fd") and os.name == "posix":
+        return DeviceTransport(target, line, port)
+    return SerialTransport(target, line, port)
+
+
+def _open(target: str, line: LineSettings) -> Any:
+    import serial
+
+    try:
+        return serial.serial_for_url(
+            target,
+            baudrate=line.baud,
+            bytesize=line.data_bits,
+            parity=line.parity,
+            stopbits=line.stop_bits,
+            timeout=_SLICE_S,
+            write_timeout=WRITE_TIMEOUT_S,
+            exclusive=True,
+        )
+    except (OSError, ValueError, NotImplementedError) as error:  # SerialException is an OSError
+        raise _open_error(target, line, error) from error
+    except Exception as error:  # a URL handler or termios with an error of its own
+        if type(error).__name__ != "error":
+            raise
+        raise _open_error(target, line, error) from error
+
+
+def _open_error(target: str, line: LineSettings, error: Exception) -> LineError:
+    number = getattr(error, "errno", None)
+    if number is None and error.args and isinstance(error.args[0], int):
+        number = error.args[0]
+    text = str(error)
+    if number in {errno.EBUSY, errno.EAGAIN, errno.EWOULDBLOCK} or "exclusively lock" in text:
+        return PortBusy(
+            f"{target}: another program has the port open",
+            hint="close it (a terminal, the vendor's program), or wait and run again",
+        )
+    if number == errno.ENOENT or "FileNotFoundError" in text:
+        return LineError(
+            f"{target}: no such port",
+            hint="'fatektool ports' lists the serial ports here; is the adapter plugged in?",
+        )
+    if number in {errno.EACCES, errno.EPERM} or "PermissionError" in text:
+        return LineError(
+            f"{target}: no right to use the port",
+            hint="on Linux join the group that owns it (often dialout) and log in again",
+        )
+    if number in {errno.EINVAL, errno.ENOTTY} or isinstance(error, ValueError):
+        return LineError(
+            f"{target}: cannot be used as a serial port at {line}: {text}",
+            hint="check the name, --baud and --format against what the adapter can do",
+        )
+    return LineError(f"{target}: cannot open: {text}", hint="'fatektool ports' lists the serial ports here")
+
+
+def _is_pty(target: str) -> bool:
+    if os.name != "posix" or "://" in target:
+        return False
+    with contextlib.suppress(OSError):
+        real = os.path.realpath(target)
+        return real.startswith(("/dev/pts/", "/dev/ttyp", "/dev/ttys0", "/dev/ttys1"))
+    return False
+
+
+class SerialTransport(Transport):
+    """A port that only pyserial can wait for: on Windows, or behind a URL."""
+
+    def __init__(self, name: str, line: LineSettings, port: Any) -> None:
+        self.name = name
+        self.line = str(line)
+        self._port = port
+
+    def _gone(self, error: Exception) -> TransportClosed:
+        self.close()
+        return TransportClosed(
+            f"{self.name}: the port is gone: {error}",
+            hint="was the adapter pulled out? plug it in and run again",
+        )
+
+    def read(self, max_bytes: int, timeout_s: float) -> bytes:
+        """Read what is there first, at most ``max_bytes``."""
+        deadline = self.clock() + timeout_s
+        while not (data := self._read_slice(max_bytes)):
+            if self.clock() >= deadline:
+                raise TransportTimeout(f"{self.name}: nothing came within {timeout_s:.3f} s")
+        return data
+
+    def _read_slice(self, max_bytes: int) -> bytes:
+        try:
+            return bytes(self._port.read(min(max_bytes, max(1, self._port.in_waiting))))
+        except (OSError, ValueError, TypeError, AttributeError) as error:  # pyserial's, once it is closed
+            raise self._gone(error) from error
+
+    def write(self, data: bytes) -> None:
+        """Write all of ``data``."""
+        try:
+            self._port.write(data)
+        except (OSError, ValueError, TypeError, AttributeError) as error:
+            if type(error).__name__ == "SerialTimeoutException":
+                raise TransportTimeout(f"{self.name}: takes no bytes for {WRITE_TIMEOUT_S} s") from error
+            raise self._gone(error) from error
+
+    def drain(self) -> bytes:
+        """Take what was received already."""
+        taken = bytearray()
+        with contextlib.suppress(OSError, ValueError, TypeError, AttributeError):
+            while len(taken) < DRAIN_LIMIT and (waiting := self._port.in_waiting):
+                taken += self._port.read(min(waiting, 4096))
+        return bytes(taken)
+
+    def close(self) -> None:
+        """Close the port."""
+        with contextlib.suppress(OSError, ValueError):
+            self._port.close()
+
+
+class DeviceTransport(Transport):
+    """A device on a POSIX system, through its file descriptor."""
+
+    def __init__(self, name: str, line: LineSettings, port: Any) -> None:
+        self.name = name
+        self.line = str(line)
+        self._port = port
+        self._descriptor: int = port.fd
+        self._readable: Callable[[float], bool] = readable(self._descriptor)
+        self._writable: Callable[[float], bool] = writable(self._descriptor)
+
+    def _gone(self, reason: object) -> TransportClosed:
+        self.close()
+        return TransportClosed(
+            f"{self.name}: the port is gone: {reason}",
+            hint="was the adapter pulled out? plug it in and run again",
+        )
+
+    def read(self, max_bytes: int, timeout_s: float) -> bytes:
+        """Read what is there first, at most ``max_bytes``."""
+        if self._descriptor < 0:
+            raise self._gone("closed")
+        if not self._readable(timeout_s):
+            raise TransportTimeout(f"{self.name}: nothing came within {timeout_s:.3f} s")
+        try:
+            data = os.read(self._descriptor, max_bytes)
+        except BlockingIOError:
+            raise TransportTimeout(f"{self.name}: nothing came") from None
+        except OSError as error:
+            raise self._gone(error.strerror) from error
+        if not data:
+            raise self._gone("end of file")
+        return data
+
+    def write(self, data: bytes) -> None:
+        """Write all of ``data``."""
+        if self._descriptor < 0:
+            raise self._gone("closed")
+        rest = memoryview(data)
+        while rest:
+            try:
+                rest = rest[os.write(self._descriptor, rest) :]
+            except BlockingIOError:
+                if not self._writable(WRITE_TIMEOUT_S):
+                    raise TransportTimeout(f"{self.name}: takes no bytes for {WRITE_TIMEOUT_S} s") from None
+            except OSError as error:
+                raise self._gone(error.strerror) from error
+
+    def drain(self) -> bytes:
+        """Take what was received already."""
+        taken = bytearray()
+        if self._descriptor >= 0:
+            with contextlib.suppress(OSError):
+                while len(taken) < DRAIN_LIMIT and (data := os.read(self._descriptor, 4096)):
+                    taken += data
+        return bytes(taken)
+
+    def close(self) -> None:
+        """Close the port."""
+        self._descriptor = -1
+        with contextlib.suppress(OSError):
+            self._port.close()

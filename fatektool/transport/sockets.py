@@ -1,0 +1,136 @@
+"""What TCP and UDP share: a connected, non-blocking socket, its errors in the project's words.
+
+A connection that broke is made anew at the next ``write``: mixed Ethernet modules stop answering now and
+then, and a reconnect mends it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+from abc import abstractmethod
+from typing import TYPE_CHECKING
+
+from fatektool.errors import LineError, TransportClosed, TransportTimeout
+from fatektool.transport.base import DRAIN_LIMIT, WRITE_TIMEOUT_S, Transport
+from fatektool.transport.wait import readable, writable
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+Address = tuple[str, int]
+
+
+def resolve(host: str, port: int) -> Address:
+    """The IP address of a host, with the port.
+
+    Raises:
+        LineError: the name has none.
+    """
+    try:
+        found = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)
+    except (OSError, UnicodeError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise LineError(
+            f"{host}: no such host: {reason}", hint="check the name, or give its IP address", host=host
+        ) from error
+    address = found[0][4]
+    return str(address[0]), int(address[1])
+
+
+def family_of(address: Address) -> socket.AddressFamily:
+    """IPv6 if the address has colons."""
+    return socket.AF_INET6 if ":" in address[0] else socket.AF_INET
+
+
+class SocketTransport(Transport):
+    """A connected socket; how it connects and receives is the subclass's.
+
+    Args:
+        name: the target, for messages.
+        address: IP address and port.
+    """
+
+    def __init__(self, name: str, address: Address) -> None:
+        self.name = name
+        self._address = address
+        self._socket: socket.socket | None = None
+        self._readable: Callable[[float], bool] = lambda _: False
+        self._writable: Callable[[float], bool] = lambda _: False
+        self._use(self._connect())
+
+    @abstractmethod
+    def _connect(self) -> socket.socket:
+        """Make a connected socket, or raise ``TransportClosed``."""
+
+    @abstractmethod
+    def _receive(self, connected: socket.socket, max_bytes: int) -> bytes:
+        """Receive at least one byte, or raise ``BlockingIOError`` or ``TransportClosed``."""
+
+    def _use(self, connected: socket.socket) -> socket.socket:
+        connected.settimeout(0)
+        self._socket = connected
+        self._readable = readable(connected.fileno())
+        self._writable = writable(connected.fileno())
+        return connected
+
+    def _broken(self, error: OSError) -> TransportClosed:
+        self.close()
+        return TransportClosed(
+            f"{self.name}: the connection broke: {error.strerror or error}",
+            hint="is the PLC's Ethernet module on, and the cable in?",
+        )
+
+    def read(self, max_bytes: int, timeout_s: float) -> bytes:
+        """Read what is there first, at most ``max_bytes``."""
+        connected = self._socket
+        if connected is None:
+            raise TransportClosed(f"{self.name}: the connection is closed")
+        try:
+            if not self._readable(timeout_s):
+                raise TransportTimeout(f"{self.name}: nothing came within {timeout_s:.3f} s")
+            data = self._receive(connected, max_bytes)
+        except BlockingIOError:
+            data = b""
+        except OSError as error:
+            raise self._broken(error) from error
+        if not data:  # a datagram with a wrong checksum, or an empty one
+            raise TransportTimeout(f"{self.name}: nothing came")
+        return data
+
+    def write(self, data: bytes) -> None:
+        """Send all of ``data``; connect first if the connection was lost."""
+        connected = self._socket or self._use(self._connect())
+        rest = memoryview(data)
+        try:
+            while rest:
+                try:
+                    rest = rest[connected.send(rest) :]
+                except BlockingIOError:
+                    if not self._writable(WRITE_TIMEOUT_S):
+                        self.close()
+                        raise TransportTimeout(
+                            f"{self.name}: takes no bytes for {WRITE_TIMEOUT_S} s"
+                        ) from None
+        except OSError as error:
+            raise self._broken(error) from error
+
+    def drain(self) -> bytes:
+        """Take what was received already."""
+        taken = bytearray()
+        connected = self._socket
+        if connected is not None:
+            with contextlib.suppress(OSError, TransportClosed):
+                while len(taken) < DRAIN_LIMIT:
+                    taken += self._receive(connected, 4096)
+        return bytes(taken)
+
+    def renew(self) -> None:
+        """Drop the connection; the next ``write`` makes another."""
+        self.close()
+
+    def close(self) -> None:
+        """Close the socket."""
+        if self._socket is not None:
+            self._socket.close()
+            self._socket = None

@@ -1,0 +1,87 @@
+"""What ``--port`` names: ``/dev/ttyUSB0``, ``COM3``, ``tcp://host:500``, ``udp://host``, ``sim:FILE``, a URL.
+
+::
+
+    scheme       kind     opened by
+    (none)       serial   pyserial, a device
+    tcp, udp     net      this project, port 500 unless named
+    sim          sim      the simulator, within the process
+    others       serial   pyserial, by its URL handler: rfc2217, socket, spy, …
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from enum import Enum
+from typing import Final
+
+from fatektool.errors import UsageError
+
+_NET: Final = re.compile(
+    r"(tcp|udp)://(?:\[([0-9A-Fa-f:.%\w]+)\]|([^/:\[\]@?#\s]+))(?::([0-9]+))?/?", re.ASCII
+)
+_SCHEME: Final = re.compile(r"[A-Za-z][A-Za-z0-9+.]*://")
+DEFAULT_PORT: Final = 500
+
+
+class TargetKind(Enum):
+    """How a target is opened."""
+
+    SERIAL = "serial"
+    TCP = "tcp"
+    UDP = "udp"
+    SIM = "sim"
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """One target, taken apart.
+
+    Attributes:
+        text: as the user wrote it.
+        kind: how it is opened.
+        host: for TCP and UDP.
+        port: for TCP and UDP.
+        path: the device or URL of a serial port, the file of ``sim:FILE``; empty for ``sim:``.
+    """
+
+    text: str
+    kind: TargetKind
+    host: str = ""
+    port: int = 0
+    path: str = ""
+
+    @classmethod
+    def parse(cls, text: str) -> Target:
+        """Read a target.
+
+        Raises:
+            UsageError: it is none.
+        """
+        if text.startswith("sim:"):
+            return cls(text, TargetKind.SIM, path=text.removeprefix("sim:"))
+        if text.startswith(("tcp:", "udp:")):
+            return cls._net(text)
+        if not text.strip() or "\0" in text:
+            raise UsageError("the target is empty", hint=_WAYS)
+        return cls(text, TargetKind.SERIAL, path=text)
+
+    @classmethod
+    def _net(cls, text: str) -> Target:
+        match = _NET.fullmatch(text)
+        if match is None:
+            raise UsageError(f"target {text!r}: expected tcp://host:port or udp://host:port", hint=_WAYS)
+        port = int(match[4]) if match[4] else DEFAULT_PORT
+        if not 1 <= port <= 65535:
+            raise UsageError(f"target {text!r}: port: expected 1 to 65535, got {port}")
+        kind = TargetKind.TCP if match[1] == "tcp" else TargetKind.UDP
+        return cls(text, kind, host=match[2] or match[3], port=port)
+
+    @property
+    def is_url(self) -> bool:
+        """True for a serial port that pyserial opens by URL."""
+        return self.kind is TargetKind.SERIAL and _SCHEME.match(self.text) is not None
+
+
+_WAYS: Final = "such as /dev/ttyUSB0, COM3, tcp://192.168.2.3:500, udp://192.168.2.3 or sim:"

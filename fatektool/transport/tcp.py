@@ -1,0 +1,54 @@
+"""TCP: to a PLC's Ethernet module or to a serial gateway. A stream may split or join frames anywhere."""
+
+from __future__ import annotations
+
+import socket
+from typing import TYPE_CHECKING
+
+from fatektool.errors import TransportClosed
+from fatektool.transport.sockets import SocketTransport, family_of
+
+if TYPE_CHECKING:
+    from fatektool.transport.sockets import Address
+
+
+class TcpTransport(SocketTransport):
+    """A TCP connection.
+
+    Args:
+        name: the target, for messages.
+        address: IP address and port.
+        connect_timeout_s: how long a connection may take to be made.
+
+    Raises:
+        TransportClosed: nobody accepts it.
+    """
+
+    def __init__(self, name: str, address: Address, *, connect_timeout_s: float = 5.0) -> None:
+        self._connect_timeout_s = connect_timeout_s
+        super().__init__(name, address)
+
+    def _connect(self) -> socket.socket:
+        connecting = socket.socket(family_of(self._address), socket.SOCK_STREAM)
+        try:
+            connecting.settimeout(self._connect_timeout_s)
+            connecting.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            connecting.connect(self._address)
+        except OSError as error:
+            connecting.close()
+            reason = error.strerror or str(error)
+            raise TransportClosed(
+                f"{self.name}: cannot connect to {self._address[0]} port {self._address[1]}: {reason}",
+                hint="check address and port, and that the PLC's Ethernet module or the gateway is on",
+            ) from error
+        return connecting
+
+    def _receive(self, connected: socket.socket, max_bytes: int) -> bytes:
+        data = connected.recv(max_bytes)
+        if not data:
+            self.close()
+            raise TransportClosed(
+                f"{self.name}: the other side closed the connection",
+                hint="another program may hold the PLC's only connection",
+            )
+        return data

@@ -1,0 +1,181 @@
+r"""A record of the wire: what went out and what came in, with the time of each.
+
+``.ndjson``, one line a record::
+
+    {"time": "2026-11-22T03:15:00.123456Z", "direction": "tx", "hex": "0230313430433703"}
+
+``.pcap``, for Wireshark: link type 147 (user 0), nanosecond time stamps; before the bytes of each record
+stands a pseudo-header of four bytes::
+
+    version 01 · direction 00 sent, 01 received · protocol 01 FACON, 02 M-series, 03 Modbus · 00
+
+Bytes that came in pieces make one record up to the next request or time-out, so that a frame is seldom split.
+A record is written when it is complete: a program that dies keeps all but the last.
+"""
+
+from __future__ import annotations
+
+import json
+import struct
+import time
+from typing import TYPE_CHECKING, BinaryIO, Final, Protocol
+
+from fatektool.errors import TransportError, UsageError
+from fatektool.transport.base import Transport
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+LINK_TYPE: Final = 147
+PCAP_MAGIC: Final = 0xA1B23C4D  # nanoseconds, in the writer's byte order
+PROTOCOL_CODES: Final = {"facon": 1, "mseries": 2, "modbus-rtu": 3, "modbus-ascii": 3, "modbus-tcp": 3}
+SENT: Final = "tx"
+RECEIVED: Final = "rx"
+_PCAP_HEADER: Final = struct.Struct("<IHHiIII")
+_RECORD_HEADER: Final = struct.Struct("<IIII")
+
+
+class TraceWriter(Protocol):
+    """Writes records to a file."""
+
+    def record(self, time_ns: int, direction: str, data: bytes) -> None:
+        """Write one record."""
+
+    def close(self) -> None:
+        """Close the file; again is fine."""
+
+
+class NdjsonTrace:
+    """One JSON line a record."""
+
+    def __init__(self, file: BinaryIO) -> None:
+        self._file = file
+
+    def record(self, time_ns: int, direction: str, data: bytes) -> None:
+        """Write one record."""
+        entry = {"time": time_text(time_ns), "direction": direction, "hex": data.hex().upper()}
+        self._file.write(json.dumps(entry).encode() + b"\n")
+        self._file.flush()
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+
+class PcapTrace:
+    """A capture file for Wireshark."""
+
+    def __init__(self, file: BinaryIO, protocol: str) -> None:
+        self._file = file
+        self._protocol = PROTOCOL_CODES[protocol]
+        file.write(_PCAP_HEADER.pack(PCAP_MAGIC, 2, 4, 0, 0, 65535, LINK_TYPE))
+        file.flush()
+
+    def record(self, time_ns: int, direction: str, data: bytes) -> None:
+        """Write one record."""
+        packet = bytes([1, direction == RECEIVED, self._protocol, 0]) + data
+        seconds, nanoseconds = divmod(time_ns, 1_000_000_000)
+        self._file.write(_RECORD_HEADER.pack(seconds, nanoseconds, len(packet), len(packet)) + packet)
+        self._file.flush()
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+
+def open_trace(path: Path, protocol: str) -> TraceWriter:
+    """Begin a trace file, ``.pcap`` or ``.ndjson`` by its name.
+
+    Raises:
+        UsageError: another ending, or a file that cannot be written.
+    """
+    suffix = path.suffix.lower()
+    if suffix not in {".pcap", ".ndjson"}:
+        raise UsageError(f"trace {path}: expected a name that ends in .pcap or .ndjson")
+    try:
+        file = path.open("wb")
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise UsageError(f"cannot write the trace {path}: {reason}") from error
+    return PcapTrace(file, protocol) if suffix == ".pcap" else NdjsonTrace(file)
+
+
+def time_text(time_ns: int) -> str:
+    """A time stamp as RFC 3339, UTC, with microseconds."""
+    seconds, nanoseconds = divmod(time_ns, 1_000_000_000)
+    return time.strftime("%Y-%m-%dT%H:%M:%S", time.gmtime(seconds)) + f".{nanoseconds // 1000:06d}Z"
+
+
+class TracedTransport(Transport):
+    """A transport whose traffic is recorded.
+
+    Args:
+        inner: the medium.
+        writer: where to.
+        time_ns: the time of day; for tests.
+    """
+
+    def __init__(
+        self, inner: Transport, writer: TraceWriter, *, time_ns: Callable[[], int] = time.time_ns
+    ) -> None:
+        self._inner = inner
+        self._writer = writer
+        self._time_ns = time_ns
+        self._received = bytearray()
+        self._received_at = 0
+        self.name = inner.name
+        self.line = inner.line
+        self.clock = inner.clock
+
+    def read(self, max_bytes: int, timeout_s: float) -> bytes:
+        """Read, and keep what came for its record."""
+        try:
+            data = self._inner.read(max_bytes, timeout_s)
+        except TransportError:
+            self._flush()
+            raise
+        self._keep(data)
+        return data
+
+    def write(self, data: bytes) -> None:
+        """Record what came before, then what goes out."""
+        self._flush()
+        self._record(self._time_ns(), SENT, data)
+        self._inner.write(data)
+
+    def drain(self) -> bytes:
+        """Take what is there, and keep it for its record."""
+        data = self._inner.drain()
+        if data:
+            self._keep(data)
+        return data
+
+    def renew(self) -> None:
+        """Start afresh."""
+        self._inner.renew()
+
+    def close(self) -> None:
+        """Write the last record and close both."""
+        self._flush()
+        self._inner.close()
+        self._writer.close()
+
+    def _keep(self, data: bytes) -> None:
+        if not self._received:
+            self._received_at = self._time_ns()
+        self._received += data
+
+    def _flush(self) -> None:
+        if self._received:
+            data = bytes(self._received)
+            self._received.clear()
+            self._record(self._received_at, RECEIVED, data)
+
+    def _record(self, time_ns: int, direction: str, data: bytes) -> None:
+        try:
+            self._writer.record(time_ns, direction, data)
+        except (OSError, ValueError) as error:
+            raise UsageError(
+                f"cannot write the trace: {getattr(error, 'strerror', None) or error}"
+            ) from error

@@ -1,0 +1,41 @@
+"""Waiting for one file descriptor, with whatever this system has for it.
+
+``poll`` where it exists, as ``select`` fails on descriptors past 1023; else ``select``, which on Windows
+takes sockets of any number.
+"""
+
+from __future__ import annotations
+
+import select
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+
+def readable(descriptor: int) -> Callable[[float], bool]:
+    """A function that waits at most so many seconds until the descriptor has bytes, or its end."""
+    return _waiter(descriptor, writing=False)
+
+
+def writable(descriptor: int) -> Callable[[float], bool]:
+    """A function that waits at most so many seconds until the descriptor takes bytes."""
+    return _waiter(descriptor, writing=True)
+
+
+def _waiter(descriptor: int, *, writing: bool) -> Callable[[float], bool]:
+    if hasattr(select, "poll"):
+        poller = select.poll()
+        poller.register(descriptor, select.POLLOUT if writing else select.POLLIN)
+
+        def wait_poll(timeout_s: float) -> bool:
+            return bool(poller.poll(max(0.0, timeout_s) * 1000))
+
+        return wait_poll
+
+    def wait_select(timeout_s: float) -> bool:
+        watched = [descriptor]
+        found = select.select([] if writing else watched, watched if writing else [], [], max(0.0, timeout_s))
+        return any(found)
+
+    return wait_select
