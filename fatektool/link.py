@@ -16,7 +16,8 @@ time-out the late answer to page 5 would pass for page 6. What keeps them apart:
 for. Whoever sends many requests of one kind puts up a fence at the end and reads again what stands in doubt:
 that is ``batch.ask_all``.
 
-Deadline of one try = wire time of request and longest answer at this baud + the PLC's time.
+Deadline of one try = wire time of request and longest answer at this baud + the PLC's time. A PLC whose
+answers are seen to come late gets twice that time, up to four times; one that is silent does not.
 """
 
 from __future__ import annotations
@@ -36,6 +37,7 @@ from fatektool.errors import (
     UsageError,
 )
 from fatektool.protocol.commands import Command, Loopback, ReadBriefStatus
+from fatektool.protocol.plc_errors import PROGRAM_COMMANDS, PROGRAM_REFUSED
 from fatektool.protocol.read_back import read_back
 from fatektool.transport.base import no_note
 
@@ -50,6 +52,7 @@ A = TypeVar("A")
 
 _READ_BYTES = 4096
 _SILENT_TRIES_BEFORE_RENEWAL = 2
+_MOST_PATIENCE = 4
 
 
 @dataclass(slots=True)
@@ -64,6 +67,11 @@ class Counters:
     echoes: int = 0
     fences: int = 0
     bytes_heard: int = 0
+
+    @property
+    def trouble(self) -> int:
+        """How often something went wrong; 0 on a clean line."""
+        return self.timeouts + self.checksum_errors + self.garbled + self.strays
 
 
 class Link:
@@ -111,7 +119,8 @@ class Link:
         self._echoes: bool | None = None
         self._owed = 0  # requests without an answer since the last fence: as many may still come
         self._silent_tries = 0
-        self._loopback_answered = False
+        self._patience = 1
+        self._answered: set[int] = set()
         self._heard = ""
 
     # --- what others call -------------------------------------------------------------------------
@@ -124,6 +133,7 @@ class Link:
             PlcRefused: the answer is an error code.
         """
         failure: LineError | None = None
+        fences = self.counters.fences
         for _ in range(self.retries + 1):
             try:
                 self._prepare(request)
@@ -134,7 +144,7 @@ class Link:
                 raise self._no_answer(request, failure or error) from error
             if request.writes and self._took(request):
                 return None  # type: ignore[return-value]  # a write's answer is None
-        raise self._no_answer(request, failure)
+        raise self._no_answer(request, failure, alive=self.counters.fences > fences)
 
     def fence(self) -> None:
         """Make sure that no answer to an earlier request can come any more.
@@ -145,7 +155,7 @@ class Link:
         """
         failure: LineError | None = None
         nonce = Loopback(b"")
-        for _ in range(max(1, self.retries)):
+        for _ in range(self.retries + 1):
             nonce = Loopback(self._nonces())
             try:
                 if self._echoes is None:
@@ -156,7 +166,6 @@ class Link:
             except (TransportError, FrameError) as error:
                 failure = error
                 continue
-            self._loopback_answered = True
             self._doubt = False
             self._owed = 0
             self.counters.fences += 1
@@ -173,7 +182,7 @@ class Link:
         try:
             self.fence()
         except (NoAnswer, PlcRefused):
-            if self._loopback_answered:
+            if Command.LOOPBACK in self._answered:
                 raise
             self._note("this PLC answers no loopback (4E): a late answer to an earlier request could pass")
             self._doubt = False
@@ -206,8 +215,8 @@ class Link:
         self.counters.exchanges += 1
         try:
             self.transport.write(raw)
-            deadline = self.transport.clock() + (len(raw) + size) * self._byte_time_s + self.timeout_s
-            return self._await(request, raw, size, deadline)
+            deadline = self.transport.clock() + (len(raw) + size) * self._byte_time_s
+            return self._await(request, raw, size, deadline + self.timeout_s * self._patience)
         except TransportTimeout:
             self.counters.timeouts += 1
             self._lost()
@@ -227,7 +236,7 @@ class Link:
 
     def _await(self, request: Request[A], raw: bytes, size: int, deadline: float) -> A:
         echo_due = self._echoes is True
-        bad = self.counters.garbled + self.counters.checksum_errors
+        heard_before = self.counters.bytes_heard
         while True:
             frame = self._next_frame(size, deadline)
             if frame.raw == raw and (echo_due or not self.codec.echo_may_pass(request)):
@@ -248,9 +257,11 @@ class Link:
                     self._doubt = True
                     continue
                 self._silent_tries = 0
-                clean = bad == self.counters.garbled + self.counters.checksum_errors
-                if self._echoes is None and clean and not self.codec.echo_may_pass(request):
-                    self._echoes = False
+                self._answered.add(request.command)
+                if self._echoes is None and not self.codec.echo_may_pass(request):
+                    beside = self.counters.bytes_heard - heard_before - len(frame.raw)
+                    if beside < len(raw):  # too little for an echo, even a damaged one
+                        self._echoes = False
                 return answer
 
     def _next_frame(self, size: int, deadline: float) -> Frame:
@@ -296,8 +307,9 @@ class Link:
         self._heard = self._heard or f"an answer to another command ({frame.command:02X})"
         if frame.command == Command.LOOPBACK:
             return  # an old fence, which can be told from everything else
-        if self._owed:
+        if self._owed:  # it came, but late: give this PLC more time from now on
             self._owed -= 1
+            self._patience = min(2 * self._patience, _MOST_PATIENCE)
         else:
             self.suspicions += 1
 
@@ -343,25 +355,31 @@ class Link:
         except PlcRefused:
             return False
 
-    def _no_answer(self, request: Request[A], failure: LineError | None) -> LineError:
+    def _no_answer(self, request: Request[A], failure: LineError | None, *, alive: bool = False) -> LineError:
         if isinstance(failure, TransportClosed):
             return failure
         heard = f"heard {self._heard}" if self._heard else "nothing heard"
+        if alive:
+            heard = f"it answers loopbacks, but not this; {heard}"
         where = f"{self.transport.name} ({self.transport.line or self.codec.name})"
         return NoAnswer(
             f"no answer from station {self.station} on {where} to '{request.command.words}' "
             f"({request.command:02X}) in {self.retries + 1} tries of {self.timeout_s:g} s: {heard}",
-            hint=self._advice(),
+            hint=self._advice(request, alive=alive),
             station=self.station,
             target=self.transport.name,
             heard=self._heard or None,
         )
 
-    def _advice(self) -> str:
+    def _advice(self, request: Request[A], *, alive: bool) -> str:
+        if alive and request.command in PROGRAM_COMMANDS and request.command not in self._answered:
+            return PROGRAM_REFUSED
         if "station" in self._heard:
             return "check --station"
         if "own request" in self._heard:
             return "the PLC is silent: is it on, are A and B the right way round, is the station right?"
+        if alive:
+            return "the PLC is slow or the line loses frames: try a longer --timeout, more --retries"
         if self._heard:
             return "check --baud, --format and --protocol, and the line's termination and shield"
         return "is the PLC on and the cable in? Check station, baud and format (factory: station 1, 9600 7E1)"

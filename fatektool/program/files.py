@@ -36,15 +36,23 @@ def require_place(path: Path, *, overwrite: bool) -> Path:
             raise UsageError(f"{path} is a folder, expected a file name", file=str(path))
         if real.exists() and not overwrite:
             raise exists_already(path)
-        if not real.parent.is_dir():
-            raise UsageError(f"folder {real.parent} does not exist", hint="make it first", file=str(path))
-        if not os.access(real.parent, os.W_OK):
-            raise UsageError(
-                f"folder {real.parent} is not writable", hint="choose another place", file=str(path)
-            )
+        require_folder(real.parent)
     except (OSError, ValueError) as error:
         raise file_error("look at", path, error) from error
     return real
+
+
+def require_folder(path: Path) -> Path:
+    """Check that files can be made in this folder.
+
+    Raises:
+        UsageError: it is no folder, or not writable.
+    """
+    if not path.is_dir():
+        raise UsageError(f"{path} is no folder", hint="make it first, or name another", file=str(path))
+    if not os.access(path, os.W_OK):
+        raise UsageError(f"folder {path} is not writable", hint="choose another place", file=str(path))
+    return path
 
 
 def write_whole(path: Path, data: bytes, *, overwrite: bool) -> None:

@@ -343,6 +343,8 @@ def echo_may_pass(request: Request[A]) -> bool:
 
 def asked(request: Request[A]) -> str:
     """What a request asks, in words: ``read program page 5``, ``read registers R12``."""
+    if isinstance(request, RunStop):
+        return "RUN" if request.run else "STOP"
     words = request.command.words
     for name in ("page", "first", "element"):
         subject = getattr(request, name, None)

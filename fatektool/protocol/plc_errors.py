@@ -30,7 +30,8 @@ _NEXT: Final = {
     0xA: "'fatektool status' shows how many of each element this PLC has",
 }
 
-_PROGRAM_NEXT: Final = (
+PROGRAM_COMMANDS: Final = {Command.READ_PAGE, Command.WRITE_PAGE}
+PROGRAM_REFUSED: Final = (
     "this PLC may not offer its program over the link (the FBs papers no longer list 4F and 50): "
     "use the vendor's program, or check for a password"
 )
@@ -45,8 +46,8 @@ def refusal(code: int, command: int, asked: str) -> PlcRefused:
         asked: what was asked, in words: ``read program page 5``.
     """
     hint = _NEXT.get(code)
-    if code in {0x2, 0x4} and command in {Command.READ_PAGE, Command.WRITE_PAGE}:
-        hint = _PROGRAM_NEXT
+    if code in {0x2, 0x4} and command in PROGRAM_COMMANDS:
+        hint = PROGRAM_REFUSED
     meaning = MEANINGS.get(code, "a code that no paper lists")
     return PlcRefused(
         f"the PLC refused to {asked} ({command:02X}): error {code:X}, {meaning}",

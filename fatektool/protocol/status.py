@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import struct
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 from fatektool.errors import FrameError
 
@@ -54,6 +54,10 @@ class StatusFlags:
     def parse(cls, byte: int) -> StatusFlags:
         """Read the seven flags of one byte; bit 7 is reserved."""
         return cls(*(bool(byte >> bit & 1) for bit in range(7)))
+
+    def document(self) -> dict[str, bool]:
+        """The flags as JSON has them."""
+        return {name: getattr(self, name) for name in self.__slots__}
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,6 +116,13 @@ class System:
         major = self.os_version.partition(".")[0]
         newer = major.isdigit() and int(major) >= FBS_OS_MAJOR
         return (POINTS_FBS if newer else POINTS_FB).get(self.main_unit_points)
+
+    def document(self) -> dict[str, Any]:
+        """The system as JSON has it, each code beside its name."""
+        found: dict[str, Any] = {name: getattr(self, name) for name in self.__slots__}
+        found["unit_type"] = {"code": self.unit_type, "name": self.unit_type_name}
+        found["main_unit_points"] = {"code": self.main_unit_points, "points": self.points}
+        return found
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,81 @@
+"""``backup``: a PLC's program into a file."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from fatektool.cli.documents import saved_document
+from fatektool.cli.options import PATH, Connection, connection_options
+from fatektool.cli.output import Voice, table
+from fatektool.errors import UsageError
+from fatektool.jobs.backup import backup
+from fatektool.jobs.times import stamp, utc
+from fatektool.program.archive import Backup, save_backup
+from fatektool.program.files import require_place, write_whole
+
+STDOUT = Path("-")
+
+
+@click.command("backup", epilog="Example: fatektool backup press.json -p /dev/ttyUSB0 -s 3")
+@click.argument("file", required=False, type=PATH)
+@click.option("--force", is_flag=True, help="Replace FILE if it exists.")
+@click.option("--single-pass", is_flag=True, help="Read once instead of twice; nothing is compared.")
+@click.option("--any-header", is_flag=True, help="Keep an image whose header does not hold, marked as such.")
+@click.option("--raw", type=PATH, metavar="FILE.bin", help="Also write the bare pages.")
+@connection_options
+def backup_command(
+    connection: Connection,
+    voice: Voice,
+    *,
+    file: Path | None,
+    force: bool,
+    single_pass: bool,
+    any_header: bool,
+    raw: Path | None,
+) -> None:
+    """Read the PLC's program into FILE.
+
+    Everything is read twice and compared, the header is checked, and FILE is written whole or not at all.
+    Without FILE the name is made of station and time; - is standard output. The PLC may run.
+    """
+    path = file or Path(f"fatek-st{connection.station:02}-{stamp(utc())}.json")
+    if raw is not None and raw.resolve() == path.resolve():
+        raise UsageError(f"{raw} is named twice: expected another name for --raw")
+    for place in (path, raw):
+        if place is not None and place != STDOUT:
+            require_place(place, overwrite=force)
+    with connection.open(voice) as plc, voice.progress() as bar:
+        clock = plc.link.transport.clock
+        began = clock()
+        found = backup(plc, single_pass=single_pass, any_header=any_header, progress=bar.update)
+        duration_s = clock() - began
+        counters = plc.link.counters
+    voice.detail(f"line: {counters}")
+    warn_of_header(found, voice)
+    if raw is not None:
+        write_whole(raw, found.program.data, overwrite=force)
+    if path == STDOUT:
+        sys.stdout.buffer.write(found.to_bytes())
+        sys.stdout.buffer.flush()
+        return
+    save_backup(found, path, overwrite=force)
+    program = found.program
+    size = f"{program.ladder_words} words, {len(program.pages)} pages"
+    rows = [
+        ("saved", path),
+        ("program", f"{program.header.signature or 'unknown'}, {size}"),
+        ("passes", f"{found.passes}, equal" if found.passes > 1 else "1, not compared"),
+        ("sha256", program.sha256),
+    ]
+    voice.show(saved_document(found, path, duration_s), table(rows))
+
+
+def warn_of_header(found: Backup, voice: Voice) -> None:
+    """Say what does not hold of a header that is kept nevertheless, or is odd."""
+    for fault in found.program.header_faults:
+        voice.warn(f"the program's header does not hold: {fault}")
+    if not found.program.header.filled:
+        voice.detail("the rest of the header page is not FF, as the paper has it")

@@ -1,0 +1,121 @@
+"""``decode``: frames explained."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fatektool.cli.options import PROTOCOLS, voice_options
+from fatektool.errors import DataError, UsageError
+from fatektool.program.files import read_bounded
+from fatektool.protocol.explain import Explanation, Role
+from fatektool.protocol.facon_explain import FaconExplainer
+from fatektool.transport.trace import RECEIVED
+from fatektool.transport.trace_reader import TraceRecord, read_trace
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from fatektool.cli.output import Voice
+
+_MAX_TRACE = 256 << 20
+_ROLES = {"request": Role.REQUEST, "answer": Role.ANSWER}
+
+
+@click.command(
+    "decode", epilog="Examples: fatektool decode 02 30 31 34 30 43 37 03;  fatektool decode line.pcap"
+)
+@click.argument("frames", nargs=-1, required=True, metavar="HEX…|FILE")
+@click.option("--protocol", type=click.Choice(PROTOCOLS), default="facon", show_default=True)
+@click.option("--as", "role", type=click.Choice(list(_ROLES)), help="What the frames given as hex are.")
+@voice_options
+def decode_command(
+    frames: tuple[str, ...],
+    voice: Voice,
+    *,
+    protocol: str,
+    role: str | None,
+) -> None:
+    """Explain frames: every field, and whether the checksum is right.
+
+    They are given as HEX, or come from a trace FILE (.ndjson, .pcap).
+    """
+    explainer = FaconExplainer()
+    found: list[tuple[TraceRecord | None, Explanation]] = []
+    for record in _records(frames):
+        known = _ROLES.get(role or "", Role.EITHER) if record.time == "" else _direction(record)
+        kept = None if record.time == "" else record
+        found += [(kept, explanation) for explanation in explainer.explain(record.data, known)]
+    if not any(explanation.command is not None for _, explanation in found):
+        raise DataError(
+            "no frame in it: expected bytes from STX (02) to ETX (03)",
+            hint="for another protocol name it with --protocol",
+        )
+    document = {
+        "schema": "fatektool.decode/1",
+        "protocol": protocol,
+        "frames": [_document(record, explanation) for record, explanation in found],
+    }
+    voice.show(document, _lines(found))
+
+
+def _records(frames: tuple[str, ...]) -> Iterator[TraceRecord]:
+    """The bytes to explain; hex has no time."""
+    text = "".join(frames)
+    digits = re.sub(r"0[xX]|[\s,;:\-]", "", text)
+    if re.fullmatch(r"(?:[0-9A-Fa-f]{2})+", digits):
+        yield TraceRecord("", "", bytes.fromhex(digits))
+        return
+    if len(frames) == 1 and Path(frames[0]).exists():
+        yield from read_trace(read_bounded(Path(frames[0]), _MAX_TRACE), frames[0])
+        return
+    raise UsageError(f"{text[:60]!r} is neither hex digits in pairs nor a trace file that is there")
+
+
+def _direction(record: TraceRecord) -> Role:
+    return Role.ANSWER if record.direction == RECEIVED else Role.REQUEST
+
+
+def _document(record: TraceRecord | None, explanation: Explanation) -> dict[str, Any]:
+    return {
+        "time": record.time if record else None,
+        "direction": record.direction if record else None,
+        "role": explanation.role.value,
+        "raw": explanation.raw.hex().upper(),
+        "station": explanation.station,
+        "command": None if explanation.command is None else f"{explanation.command:02X}",
+        "checksum_ok": explanation.checksum_ok,
+        "fault": explanation.fault,
+        "fields": [
+            {
+                "name": field.name,
+                "raw": field.raw.hex().upper(),
+                "text": _text(field.raw),
+                "meaning": field.meaning,
+            }
+            for field in explanation.fields
+        ],
+    }
+
+
+def _lines(found: Iterable[tuple[TraceRecord | None, Explanation]]) -> Iterator[str]:
+    for number, (record, explanation) in enumerate(found):
+        if number:
+            yield ""
+        when = f"{record.time} {record.direction}  " if record else ""
+        size = len(explanation.raw)
+        yield f"{when}{explanation.role.value}, {size} bytes"
+        for field in explanation.fields:
+            shown = _text(field.raw)
+            cut = shown if len(shown) <= 24 else f"{shown[:20]}… ({len(field.raw)})"
+            yield f"  {field.name:<16}  {cut:<24}  {field.meaning}".rstrip()
+        if explanation.fault:
+            yield f"  fault: {explanation.fault}"
+
+
+def _text(raw: bytes) -> str:
+    """Bytes as the characters they are, others as <hex>."""
+    return "".join(chr(byte) if 0x20 < byte < 0x7F else f"<{byte:02X}>" for byte in raw)

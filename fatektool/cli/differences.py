@@ -1,0 +1,40 @@
+"""Two programs' differences in words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from fatektool.program.image import PAGE_WORDS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from fatektool.program.compare import Comparison
+
+_WORDS_SHOWN: Final = 8
+
+
+def difference_lines(found: Comparison, same: str, a: str, b: str) -> Iterator[str]:
+    """What differs, a line a page; one line if nothing does.
+
+    Args:
+        found: the comparison.
+        same: the line for two programs that are the same.
+        a: what the first is called.
+        b: what the second is called.
+    """
+    if found.same:
+        yield same
+        return
+    if found.a_ladder_words != found.b_ladder_words:
+        yield f"differs: ladder size {found.a_ladder_words} words in {a}, {found.b_ladder_words} in {b}"
+    if found.pages:
+        yield f"differs: {found.word_count} words in {len(found.pages)} pages ({a} -> {b})"
+    for page in found.pages:
+        if not page.words:
+            yield f"  page {page.page}: only in one of them"
+            continue
+        shown = ", ".join(f"{word.word}: {word.a:04X} -> {word.b:04X}" for word in page.words[:_WORDS_SHOWN])
+        more = len(page.words) - _WORDS_SHOWN
+        rest = f", {more} more" if more > 0 else ""
+        yield f"  page {page.page}, {len(page.words)} of {PAGE_WORDS} words: {shown}{rest}"

@@ -1,0 +1,137 @@
+"""The JSON documents that commands print; each has a schema in ``fatektool/schemas``."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from fatektool.jobs.times import utc
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from fatektool.client import Plc
+    from fatektool.errors import FatektoolError
+    from fatektool.jobs.restore import RestoreResult
+    from fatektool.jobs.status import StatusReport
+    from fatektool.program.archive import Backup
+    from fatektool.program.compare import Comparison
+
+
+def where(plc: Plc) -> dict[str, Any]:
+    """When and where, as every document of a PLC begins."""
+    return {
+        "time": utc(),
+        "target": plc.target,
+        "station": plc.link.station,
+        "protocol": plc.link.codec.name,
+    }
+
+
+def error_document(error: FatektoolError) -> dict[str, Any]:
+    """``fatektool.error/1``."""
+    return {
+        "schema": "fatektool.error/1",
+        "error": {
+            "kind": error.kind,
+            "exit_code": error.exit_code,
+            "message": error.message,
+            "hint": error.hint,
+            "details": error.details,
+        },
+    }
+
+
+def status_document(report: StatusReport) -> dict[str, Any]:
+    """``fatektool.status/1``."""
+    return {
+        "schema": "fatektool.status/1",
+        "time": report.time,
+        "target": report.target,
+        "station": report.station,
+        "protocol": report.protocol,
+        "status": report.flags.document(),
+        "system": None if report.system is None else report.system.document(),
+        "brief": {"status2": report.brief.status2, "model": report.brief.model},
+    }
+
+
+def backup_summary(backup: Backup) -> dict[str, Any]:
+    """What a backup holds, without its pages."""
+    source = backup.source
+    return {
+        "created": backup.created,
+        "tool": backup.tool,
+        "source": {
+            "target": source.target,
+            "station": source.station,
+            "protocol": source.protocol,
+            "line": source.line,
+        },
+        "plc": backup.plc,
+        "header": backup.header_document,
+        "ladder_words": backup.program.ladder_words,
+        "page_count": len(backup.program.pages),
+        "passes": backup.passes,
+        "sha256": backup.program.sha256,
+    }
+
+
+def saved_document(backup: Backup, file: Path, duration_s: float) -> dict[str, Any]:
+    """``fatektool.backup-result/1``: what ``backup`` wrote."""
+    return {
+        "schema": "fatektool.backup-result/1",
+        "file": str(file),
+        "duration_s": round(duration_s, 3),
+        **backup_summary(backup),
+    }
+
+
+def inspect_document(backup: Backup, file: Path) -> dict[str, Any]:
+    """``fatektool.inspect/1``."""
+    return {
+        "schema": "fatektool.inspect/1",
+        "file": str(file),
+        **backup_summary(backup),
+        "faults": list(backup.program.header_faults),
+    }
+
+
+def differences(comparison: Comparison) -> dict[str, Any]:
+    """Two programs' differences: ``a`` is the file, or the first file."""
+    return {
+        "same": comparison.same,
+        "a_ladder_words": comparison.a_ladder_words,
+        "b_ladder_words": comparison.b_ladder_words,
+        "pages_differ": len(comparison.pages),
+        "words_differ": comparison.word_count,
+        "differences": [
+            {
+                "page": page.page,
+                "words": [
+                    {"word": word.word, "a": f"{word.a:04X}", "b": f"{word.b:04X}"} for word in page.words
+                ],
+            }
+            for page in comparison.pages
+        ],
+    }
+
+
+def restore_document(
+    plc: Plc, file: Path, result: RestoreResult, *, dry_run: bool, pages_to_write: int, duration_s: float
+) -> dict[str, Any]:
+    """``fatektool.restore/1``."""
+    return {
+        "schema": "fatektool.restore/1",
+        **where(plc),
+        "file": str(file),
+        "dry_run": dry_run,
+        "pages_to_write": pages_to_write,
+        "pages_written": result.pages_written,
+        "pages_equal": result.pages_equal,
+        "verified": result.verified,
+        "safety_backup": result.safety_backup,
+        "mode_before": result.mode_before,
+        "mode_after": result.mode_after,
+        "warnings": list(result.warnings),
+        "duration_s": round(duration_s, 3),
+    }

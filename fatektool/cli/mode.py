@@ -1,0 +1,58 @@
+"""``run`` and ``stop``: what a machine does depends on it, so they ask."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fatektool.cli.documents import where
+from fatektool.cli.options import Connection, connection_options, yes_option
+from fatektool.errors import UsageError
+
+if TYPE_CHECKING:
+    from fatektool.cli.output import Voice
+
+
+@click.command("run", epilog="Example: fatektool run -p /dev/ttyUSB0 --yes")
+@yes_option
+@connection_options
+def run_command(connection: Connection, voice: Voice, *, yes: bool) -> None:
+    """Let the PLC RUN (41), and read the mode back. The machine may move."""
+    _change(connection, voice, run=True, yes=yes)
+
+
+@click.command("stop", epilog="Example: fatektool stop -p /dev/ttyUSB0 --yes")
+@yes_option
+@connection_options
+def stop_command(connection: Connection, voice: Voice, *, yes: bool) -> None:
+    """STOP the PLC (41), and read the mode back. The machine loses its control."""
+    _change(connection, voice, run=False, yes=yes)
+
+
+def _change(connection: Connection, voice: Voice, *, run: bool, yes: bool) -> None:
+    mode = "RUN" if run else "STOP"
+    with connection.open(voice) as plc:
+        before = plc.brief_status().flags.running
+        if before != run:
+            question = (
+                f"Station {connection.station} on {connection.target} is in {_word(running=before)}. {mode}?"
+            )
+            if not voice.confirm(question, yes=yes):
+                raise UsageError(f"not agreed to: the PLC stays in {_word(running=before)}")
+            if run:
+                plc.run()
+            else:
+                plc.stop()
+        document: dict[str, Any] = {
+            "schema": "fatektool.mode/1",
+            **where(plc),
+            "mode_before": _word(running=before).lower(),
+            "mode_after": mode.lower(),
+        }
+    already = " already" if before == run else ""
+    voice.show(document, [f"the PLC is in {mode}{already}"])
+
+
+def _word(*, running: bool) -> str:
+    return "RUN" if running else "STOP"

@@ -1,0 +1,145 @@
+"""Where words go: data to stdout, everything else to stderr, a progress bar only on a terminal."""
+
+from __future__ import annotations
+
+import json
+import sys
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fatektool.errors import UsageError
+from fatektool.jobs.progress import Progress, no_progress
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+    from types import TracebackType
+    from typing import Self
+
+    from rich.progress import TaskID
+
+
+def print_json(document: dict[str, Any]) -> None:
+    """Print one document on stdout."""
+    click.echo(json.dumps(document, indent=2, allow_nan=False))
+
+
+@dataclass(frozen=True, slots=True)
+class Voice:
+    """How a command talks.
+
+    Attributes:
+        json: one JSON document on stdout instead of words.
+        quiet: nothing on stderr but errors.
+        verbose: more on stderr.
+    """
+
+    json: bool = False
+    quiet: bool = False
+    verbose: bool = False
+
+    def say(self, text: str) -> None:
+        """Tell the user something, on stderr."""
+        if not self.quiet:
+            click.echo(text, err=True)
+
+    def detail(self, text: str) -> None:
+        """Tell a curious user something, on stderr."""
+        if self.verbose:
+            click.echo(text, err=True)
+
+    def warn(self, text: str) -> None:
+        """Warn the user, on stderr, quiet or not."""
+        click.echo(f"warning: {text}", err=True)
+
+    def show(self, document: dict[str, Any], lines: Iterable[str]) -> None:
+        """Print the document or the lines, on stdout."""
+        if self.json:
+            print_json(document)
+        else:
+            for line in lines:
+                click.echo(line)
+
+    def confirm(self, question: str, *, yes: bool, option: str = "--yes") -> bool:
+        """Ask, unless the option answers; a question that cannot be put is a refusal.
+
+        Raises:
+            UsageError: there is no terminal to ask on.
+        """
+        if yes:
+            return True
+        if not can_ask():
+            raise UsageError(
+                "this needs a confirmation, and there is no terminal to ask on: nothing was done",
+                hint=f"add {option}",
+            )
+        return click.confirm(question, default=False, err=True)
+
+    def progress(self) -> Bar:
+        """A progress bar for a ``with`` statement; nothing where it would be noise."""
+        return Bar(shown=not self.quiet and sys.stderr.isatty())
+
+
+def can_ask() -> bool:
+    """True if there is somebody to answer a question."""
+    return sys.stdin.isatty() and sys.stderr.isatty()
+
+
+def table(rows: Iterable[tuple[str, object]]) -> Iterator[str]:
+    """Rows of name and value, aligned."""
+    rows = list(rows)
+    width = max((len(name) for name, _ in rows), default=0)
+    for name, value in rows:
+        yield f"{name:<{width}}  {value}".rstrip()
+
+
+class Bar:
+    """Pages done, rate and time left, on a terminal; ``update`` is a job's progress callback."""
+
+    def __init__(self, *, shown: bool) -> None:
+        self._shown = shown
+        self._tasks: dict[str, TaskID] = {}
+        self.update: Progress = no_progress
+
+    def __enter__(self) -> Self:
+        if self._shown:
+            from rich.console import Console
+            from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+            self._rich = Progress(
+                TextColumn("{task.description}"),
+                BarColumn(bar_width=None),
+                MofNCompleteColumn(),
+                TextColumn("pages {task.fields[rate]}"),
+                TimeRemainingColumn(elapsed_when_finished=True),
+                console=Console(stderr=True),
+                expand=True,
+                refresh_per_second=5,
+            )
+            self._rich.start()
+            self.update = self._update
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._shown:
+            self._rich.stop()
+
+    def pause(self) -> None:
+        """Take the bar off the screen, for a question."""
+        if self._shown:
+            self._rich.stop()
+
+    def go_on(self) -> None:
+        """Put the bar back."""
+        if self._shown:
+            self._rich.start()
+
+    def _update(self, phase: str, done: int, total: int) -> None:
+        task = self._tasks.get(phase)
+        if task is None:
+            task = self._tasks[phase] = self._rich.add_task(phase, total=total, rate="")
+        speed = self._rich.tasks[list(self._tasks).index(phase)].speed
+        self._rich.update(task, completed=done, rate=f"{speed:.1f}/s" if speed else "")

@@ -1,0 +1,51 @@
+"""``status``: what a PLC is and how it is."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from fatektool.cli.documents import status_document
+from fatektool.cli.options import Connection, connection_options
+from fatektool.cli.output import Voice, table
+from fatektool.jobs.status import StatusReport, read_status
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+@click.command("status", epilog="Example: fatektool status -p /dev/ttyUSB0")
+@click.option("--brief", is_flag=True, help="The brief status (40) alone: the shortest exchange there is.")
+@connection_options
+def status_command(connection: Connection, voice: Voice, *, brief: bool) -> None:
+    """Show what the PLC is and how it is (40 and 53)."""
+    with connection.open(voice) as plc:
+        report = read_status(plc, brief=brief)
+    voice.show(status_document(report), table(_rows(report)))
+
+
+def _rows(report: StatusReport) -> Iterator[tuple[str, object]]:
+    flags = report.flags
+    yield "PLC", f"station {report.station} on {report.target}"
+    yield "mode", "RUN" if flags.running else "STOP"
+    yield "battery", "LOW: change it, or the program and data are lost" if flags.battery_low else "ok"
+    yield "ladder checksum", "ERROR: restore a good backup" if flags.ladder_checksum_error else "ok"
+    yield "watchdog", "TIMED OUT" if flags.watchdog_timeout else "ok"
+    yield "emergency stop", "ACTIVE" if flags.emergency_stop else "no"
+    yield "ROM pack", "in use: the program cannot be written" if flags.rom_pack else "no"
+    yield "ID", "set" if flags.id_set else "not set"
+    yield "model code", f"{report.brief.status2:02X}, {report.brief.model or 'not in the paper'}"
+    system = report.system
+    if system is None:
+        return
+    yield "main unit", f"type {system.unit_type:02X}, {system.unit_type_name or 'not in the paper'}"
+    points = system.points
+    yield "main unit points", f"code {system.main_unit_points:02X}, {points or 'not in the paper'}"
+    yield "OS version", system.os_version
+    yield "ladder size", f"{system.ladder_words} words"
+    yield "discrete I/O", f"{system.discrete_inputs} in, {system.discrete_outputs} out"
+    yield "analog I/O", f"{system.analog_inputs} in, {system.analog_outputs} out"
+    yield "relays", f"{system.m_relays} M, {system.s_relays} S, {system.l_relays} L"
+    yield "registers", f"{system.r_registers} R, {system.d_registers} D"
+    yield "timers, counters", f"{system.timers}, {system.counters}"

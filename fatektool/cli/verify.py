@@ -1,0 +1,41 @@
+"""``verify``: is the PLC's program the one on file?"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from fatektool.cli.differences import difference_lines
+from fatektool.cli.documents import differences, where
+from fatektool.cli.options import PATH, Connection, connection_options
+from fatektool.jobs.verify import verify
+from fatektool.program.archive import load_backup
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from fatektool.cli.output import Voice
+
+
+@click.command("verify", epilog="Example: fatektool verify press.json -p /dev/ttyUSB0 || mail the-team")
+@click.argument("file", type=PATH)
+@connection_options
+def verify_command(connection: Connection, voice: Voice, *, file: Path) -> int:
+    """Compare the PLC's program with the backup FILE: exit 0 if they are the same, 1 if not.
+
+    What seems to differ is read twice. The PLC may run.
+    """
+    backup = load_backup(file)
+    with connection.open(voice) as plc, voice.progress() as bar:
+        found = verify(plc, backup.program, progress=bar.update)
+        document = {
+            "schema": "fatektool.verify/1",
+            **where(plc),
+            "file": str(file),
+            "sha256": backup.program.sha256,
+            **differences(found),
+        }
+    same = f"same: the PLC's program is the one in {file}, {len(backup.program.pages)} pages"
+    voice.show(document, difference_lines(found, same, "file", "PLC"))
+    return 0 if found.same else 1

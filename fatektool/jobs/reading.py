@@ -1,0 +1,133 @@
+"""Reading a program whole, and twice: the part that backup and restore share.
+
+Two passes must agree. Where they do not, the line's behaviour tells why:
+
+- the line was clean in both: it is the PLC that gave two answers, somebody is loading a program, or it is not
+  the same PLC any more. That is said, and nothing is kept.
+- the line had errors: one may have slipped through its 8-bit checksum. Another pass is read, until two in a
+  row agree.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from fatektool.errors import DataError, LineError
+from fatektool.jobs.progress import Progress, no_progress
+from fatektool.program.compare import compare
+from fatektool.program.image import Program, page_count, ranges
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fatektool.client import Plc
+    from fatektool.protocol.status import DetailedStatus
+
+MOST_PASSES: Final = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """A program that was read.
+
+    Attributes:
+        status: the answer to 53 of the last pass.
+        program: the image.
+        passes: how often it was read.
+    """
+
+    status: DetailedStatus
+    program: Program
+    passes: int
+
+
+def read_program(
+    plc: Plc,
+    phase: str = "reading",
+    progress: Progress = no_progress,
+    status: DetailedStatus | None = None,
+) -> Reading:
+    """Read 53 and all pages, once.
+
+    Args:
+        plc: the PLC.
+        phase: what the progress calls it.
+        progress: told of each page.
+        status: the answer to 53, if it was read just now.
+
+    Raises:
+        LineError: a page found no answer.
+        PlcRefused: the PLC does not give its program away.
+        DataError: the PLC tells of no ladder memory.
+    """
+    if status is None:
+        status = plc.detailed_status()
+    words = status.system.ladder_words
+    if not words:
+        raise DataError(
+            "the PLC's detailed status (53) tells a ladder size of 0 words: there is nothing to read",
+            hint="check the model with 'fatektool status'",
+        )
+    total = page_count(words)
+    progress(phase, 0, total)
+    pages = plc.read_pages(range(total), lambda done: progress(phase, done, total))
+    return Reading(status, Program(words, tuple(pages)), 1)
+
+
+def read_program_twice(
+    plc: Plc,
+    progress: Progress = no_progress,
+    *,
+    phase: str = "reading",
+    after_first: Callable[[Reading], None] | None = None,
+) -> Reading:
+    """Read 53 and all pages until two passes in a row agree.
+
+    Args:
+        plc: the PLC.
+        progress: told of each page.
+        phase: what the progress calls it.
+        after_first: looks at the first pass, and may raise before the second is read.
+
+    Raises:
+        DataError: two passes over a clean line differ.
+        LineError: no two passes over a bad line agree.
+        PlcRefused: the PLC does not give its program away.
+    """
+    before = _trouble(plc)
+    last = read_program(plc, phase, progress)
+    if after_first is not None:
+        after_first(last)
+    for number in range(2, MOST_PASSES + 1):
+        between = _trouble(plc)
+        again = read_program(plc, f"{phase}, pass {number}", progress)
+        difference = _difference(last, again)
+        if difference is None:
+            return Reading(again.status, again.program, number)
+        if _trouble(plc) == before:
+            raise DataError(
+                f"two passes over a clean line read different programs: {difference}",
+                hint="is somebody loading a program, or was the PLC exchanged? run it again in peace",
+            )
+        before, last = between, again
+    raise LineError(
+        f"{plc.target}: no two of {MOST_PASSES} passes read the same program: the line has too many errors",
+        hint="check shield, termination and baud; a slower baud or a shorter cable helps",
+    )
+
+
+def _difference(a: Reading, b: Reading) -> str | None:
+    """What two passes differ in, in words."""
+    if a.status.system != b.status.system:
+        return (
+            f"the detailed status (53) changed, ladder size {a.program.ladder_words} words, "
+            f"then {b.program.ladder_words}"
+        )
+    found = compare(a.program, b.program)
+    return None if found.same else f"page {ranges(found.page_numbers)}"
+
+
+def _trouble(plc: Plc) -> int:
+    """The line's errors so far; the same twice means a clean line in between."""
+    return plc.link.counters.trouble + plc.link.suspicions

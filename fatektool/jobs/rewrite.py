@@ -1,0 +1,151 @@
+"""Writing pages into a PLC, reading all back, and saying exactly what it holds if that fails."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from fatektool.errors import FatektoolError, LineError, PlcError, PlcRefused, RestoreIncomplete
+from fatektool.program.image import ranges
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fatektool.client import Plc
+    from fatektool.jobs.progress import Progress
+    from fatektool.program.image import Program
+
+_OLD: Final = "old"
+_NEW: Final = "new"
+_UNCERTAIN: Final = "uncertain"
+
+
+class Rewrite:
+    """One attempt to turn a PLC's program into another.
+
+    Args:
+        plc: the PLC, in STOP.
+        wanted: the program to write.
+        present: the program that is in it.
+        safety_backup: where ``present`` lies, for messages.
+        progress: told of each page.
+    """
+
+    def __init__(
+        self, plc: Plc, wanted: Program, present: Program, safety_backup: str | None, progress: Progress
+    ) -> None:
+        self._plc = plc
+        self._wanted = wanted
+        self._present = present
+        self._safety_backup = safety_backup
+        self._progress = progress
+        self._holds: dict[int, str] = {}
+
+    def write(self, pages: Sequence[int], *, rollback: bool = False) -> None:
+        """Write pages in order, read the whole program back and compare.
+
+        A page that reads back wrong is written once more: an acknowledged write that was not made.
+
+        Args:
+            pages: which, in order; the others are in the PLC already.
+            rollback: put ``present`` back if this fails for good.
+
+        Raises:
+            RestoreIncomplete: the PLC's program is neither old nor new.
+            PlcError: nothing was written, or it was rolled back.
+            LineError: it was rolled back.
+        """
+        self._holds = dict.fromkeys(pages, _OLD)
+        try:
+            self._write(self._wanted, pages, _NEW, "writing")
+            self._prove(self._wanted, _NEW)
+        except KeyboardInterrupt:
+            raise self._incomplete("interrupted") from None
+        except (LineError, PlcError) as error:
+            if isinstance(error, PlcRefused) and not self._pages(_NEW):
+                raise self._untouched(error) from error
+            cause = error.message
+            if rollback:
+                cause = f"{cause}; and rolling back failed: {self._roll_back(error)}"
+            raise self._incomplete(cause) from error
+
+    def _pages(self, *states: str) -> list[int]:
+        return [number for number, state in sorted(self._holds.items()) if state in states]
+
+    def _write(self, program: Program, pages: Sequence[int], state: str, phase: str) -> None:
+        self._progress(phase, 0, len(pages))
+        for done, number in enumerate(pages, 1):
+            before = self._holds.get(number, _OLD)
+            self._holds[number] = _UNCERTAIN
+            try:
+                self._plc.write_page(number, program.pages[number])
+            except PlcRefused:
+                self._holds[number] = before
+                raise
+            self._holds[number] = state
+            self._progress(phase, done, len(pages))
+
+    def _prove(self, program: Program, state: str) -> None:
+        wrong = self._read_back(program, range(len(program.pages)), "reading back")
+        if wrong:
+            self._write(program, wrong, state, "writing again")
+            wrong = self._read_back(program, wrong, "reading back again")
+        if wrong:
+            self._holds |= dict.fromkeys(wrong, _UNCERTAIN)
+            raise PlcError(
+                f"the PLC acknowledged page {ranges(wrong)}, but holds something else there",
+                hint="the PLC's program memory may be worn out or protected",
+            )
+
+    def _read_back(self, program: Program, pages: Sequence[int], phase: str) -> list[int]:
+        total = len(pages)
+        self._progress(phase, 0, total)
+        found = self._plc.read_pages(pages, lambda done: self._progress(phase, done, total))
+        return [number for number, page in zip(pages, found, strict=True) if page != program.pages[number]]
+
+    def _roll_back(self, cause: FatektoolError) -> str:
+        """Put the old program back and raise the cause; or tell why that failed too."""
+        try:
+            self._write(self._present, self._pages(_NEW, _UNCERTAIN), _OLD, "rolling back")
+            self._prove(self._present, _OLD)
+        except KeyboardInterrupt:
+            return "interrupted"
+        except (LineError, PlcError) as error:
+            return error.message
+        kind = LineError if isinstance(cause, LineError) else PlcError
+        raise kind(
+            f"{cause.message}; rolled back: the PLC holds its old program again, read back and proven, "
+            f"and is in STOP",
+            hint=cause.hint,
+            rolled_back=True,
+            safety_backup=self._safety_backup,
+        ) from cause
+
+    def _untouched(self, error: PlcRefused) -> PlcError:
+        return PlcError(
+            f"{error.message}; nothing was written: the PLC holds its old program and is in STOP",
+            hint=error.hint,
+            code=f"{error.code:X}",
+        )
+
+    def _incomplete(self, cause: str) -> RestoreIncomplete:
+        states = {_NEW: "holds the new program", _UNCERTAIN: "is uncertain", _OLD: "holds the old program"}
+        parts = [
+            f"page {ranges(found)} {words}"
+            for state, words in states.items()
+            if (found := self._pages(state))
+        ]
+        way_back = (
+            f"the old program lies in {self._safety_backup}"
+            if self._safety_backup
+            else "there is no safety backup"
+        )
+        return RestoreIncomplete(
+            f"the restore did not complete ({cause}): {', '.join(parts)}; {way_back}; "
+            f"the PLC is in STOP and must not RUN",
+            hint="mend the cause and run the same restore again: it goes on where it stands",
+            cause=cause,
+            pages_written=self._pages(_NEW),
+            pages_uncertain=self._pages(_UNCERTAIN),
+            pages_old=self._pages(_OLD),
+            safety_backup=self._safety_backup,
+        )

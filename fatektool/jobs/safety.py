@@ -1,0 +1,80 @@
+"""The safety backup: the way back from a restore.
+
+It lies beside FILE as ``FILE.safety-st01-20261122T031500Z.json`` and is never overwritten.
+
+A restore that was killed half way leaves a program that is part old, part new. When the same restore is run
+again, a backup of *that* would be no way back: so the safety backup of the first run is looked for, the one
+from whose pages and FILE's all present pages come, and kept as the way back.
+"""
+
+from __future__ import annotations
+
+from itertools import count
+from typing import TYPE_CHECKING, Final
+
+from fatektool.errors import FatektoolError
+from fatektool.jobs.times import stamp
+from fatektool.program.archive import load_backup, save_backup
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from fatektool.program.archive import Backup
+    from fatektool.program.image import Program
+
+_MOST_LOOKED_AT: Final = 100
+
+
+def save_safety_backup(backup: Backup, file: Path, folder: Path) -> Path:
+    """Write a safety backup under a new name; it is on disk when this returns.
+
+    Args:
+        backup: the program that is in the PLC.
+        file: the file that will be restored.
+        folder: where to.
+
+    Raises:
+        UsageError: the folder cannot be written.
+        DataError: the disk is full or broken.
+    """
+    stem = f"{_stem(file)}.safety-st{backup.source.station:02}-{stamp(backup.created)}"
+    for number in count(1):
+        path = folder / (f"{stem}.json" if number == 1 else f"{stem}-{number}.json")
+        if not path.exists():
+            save_backup(backup, path)
+            return path
+    raise AssertionError  # pragma: no cover  # count() has no end
+
+
+def find_way_back(present: Program, wanted: Program, station: int, file: Path, folder: Path) -> Path | None:
+    """The safety backup of an unfinished restore of the same file, if the PLC holds such a half.
+
+    Args:
+        present: the program in the PLC.
+        wanted: the program that is to be restored.
+        station: the PLC's station.
+        file: where ``wanted`` came from.
+        folder: where safety backups lie.
+    """
+    pattern = f".safety-st{station:02}-"
+    try:
+        names = [
+            path for path in folder.iterdir() if path.name.startswith(_stem(file)) and pattern in path.name
+        ]
+    except OSError:
+        return None
+    for path in sorted(names, reverse=True)[:_MOST_LOOKED_AT]:
+        try:
+            old = load_backup(path).program
+        except FatektoolError:
+            continue  # somebody's damaged file is no way back, and no reason to stop
+        if old == present or old.ladder_words != present.ladder_words:
+            continue
+        pages = zip(present.pages, old.pages, wanted.pages, strict=True)
+        if all(page in {before, after} for page, before, after in pages):
+            return path
+    return None
+
+
+def _stem(file: Path) -> str:
+    return file.name.removesuffix(".json")[:150]  # the rest of the name needs room too

@@ -1,0 +1,87 @@
+"""Reading what ``trace`` wrote, ``.ndjson`` or ``.pcap``, whoever damaged it since."""
+
+from __future__ import annotations
+
+import json
+import struct
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from fatektool.errors import DataError
+from fatektool.transport.trace import LINK_TYPE, PCAP_MAGIC, RECEIVED, SENT, time_text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+_GLOBAL: Final = 24
+_RECORD: Final = 16
+_PSEUDO_HEADER: Final = 4
+_MAX_PACKET: Final = 1 << 20
+
+
+@dataclass(frozen=True, slots=True)
+class TraceRecord:
+    """One piece of a conversation.
+
+    Attributes:
+        time: UTC, RFC 3339.
+        direction: ``tx`` sent, ``rx`` received.
+        data: the bytes.
+    """
+
+    time: str
+    direction: str
+    data: bytes
+
+
+def read_trace(data: bytes, name: str) -> Iterator[TraceRecord]:
+    """Read a trace file's bytes.
+
+    Args:
+        data: the bytes.
+        name: the file's name, for messages.
+
+    Raises:
+        DataError: no trace, or a damaged one; the records before the damage are given first.
+    """
+    if data[:4] in {struct.pack("<I", PCAP_MAGIC), struct.pack(">I", PCAP_MAGIC)}:
+        return _read_pcap(data, name)
+    return _read_ndjson(data, name)
+
+
+def _read_ndjson(data: bytes, name: str) -> Iterator[TraceRecord]:
+    for number, line in enumerate(data.splitlines(), 1):
+        if not line.strip():
+            continue
+        try:
+            entry = json.loads(line.decode())
+            record = TraceRecord(str(entry["time"]), str(entry["direction"]), bytes.fromhex(entry["hex"]))
+        except (ValueError, KeyError, TypeError, RecursionError) as error:
+            raise DataError(
+                f"{name}: line {number}: no trace record: {type(error).__name__}",
+                hint="expected a .ndjson or .pcap file that --trace wrote",
+            ) from error
+        if record.direction not in {SENT, RECEIVED}:
+            raise DataError(f"{name}: line {number}: expected direction tx or rx")
+        yield record
+
+
+def _read_pcap(data: bytes, name: str) -> Iterator[TraceRecord]:
+    order = "<" if data[:4] == struct.pack("<I", PCAP_MAGIC) else ">"
+    if len(data) < _GLOBAL or struct.unpack_from(order + "I", data, 20)[0] != LINK_TYPE:
+        raise DataError(f"{name}: no trace of this program: expected link type {LINK_TYPE}")
+    at = _GLOBAL
+    number = 0
+    while at < len(data):
+        number += 1
+        if len(data) - at < _RECORD:
+            raise DataError(f"{name}: packet {number} is cut off")
+        seconds, nanoseconds, size, _ = struct.unpack_from(order + "IIII", data, at)
+        packet = data[at + _RECORD : at + _RECORD + size]
+        if size > _MAX_PACKET or len(packet) != size or size < _PSEUDO_HEADER:
+            raise DataError(f"{name}: packet {number} is cut off or damaged")
+        direction = RECEIVED if packet[1] else SENT
+        yield TraceRecord(
+            time_text(seconds * 1_000_000_000 + nanoseconds), direction, packet[_PSEUDO_HEADER:]
+        )
+        at += _RECORD + size
