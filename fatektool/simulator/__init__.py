@@ -1,0 +1,21 @@
+"""A simulated FATEK PLC with memory: to try a client out where there is no PLC.
+
+::
+
+    servers   one thread; doors, pty_door, pty_link      (or, in the same process, no server at all)
+       │
+    line      bytes and times in, bytes and times out    <── faults   what goes wrong, seeded
+       │
+    slave     what a line needs of a protocol
+       └── facon_slave  ── facon_frame, facon_fields
+       │
+    plc       what a PLC does, in values; refusal says no
+       ├── models, memory, elements, program_image
+       └── state      its memory in a file
+
+    build     puts all of it together
+
+It shares no code with the client: both were written from the paper, so that a misreading of one shows
+as a disagreement of the two. From ``line`` down there is no I/O, no clock and no thread, but for the
+state file.
+"""

@@ -1,0 +1,71 @@
+"""What can be named in a PLC's memory, without how a protocol spells it.
+
+An element is a symbol and an address. The symbol says which *area* is meant and how wide one
+element is::
+
+    symbol            area        bits  step   example
+    X Y M S T C       discretes      1     1   Y9
+    WX .. WC          discretes     16    16   WM8   = M23..M8, M8 the lowest bit
+    DWX .. DWC        discretes     32    32   DWM0  = M31..M0
+    R D F RT RC       registers     16     1   R12
+    DR DD DF DRT DRC  registers     32     2   DR0   = R1 * 65536 + R0
+
+``step`` is what one element takes of its area, hence the distance of consecutive elements
+(FACON paper, section 4.1).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from fatektool.simulator.refusal import Refusal, RefusalCode
+
+DISCRETE_AREAS = ("X", "Y", "M", "S", "T", "C")
+REGISTER_AREAS = ("R", "D", "F", "RT", "RC")
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """One symbol's meaning.
+
+    Args:
+        symbol: as written in a request, ``DWM``.
+        area: where its elements lie, ``M``.
+        bits: the width of one element: 1, 16 or 32.
+        step: how much of the area one element takes.
+        packed: True for words made of discretes.
+    """
+
+    symbol: str
+    area: str
+    bits: int
+    step: int
+    packed: bool
+
+    @property
+    def words(self) -> int:
+        """What one element counts against a request's limit: a discrete as much as a word."""
+        return 2 if self.bits == 32 else 1
+
+
+def _kinds() -> dict[str, Kind]:
+    kinds = []
+    for area in DISCRETE_AREAS:
+        kinds.append(Kind(area, area, 1, 1, packed=False))
+        kinds.append(Kind(f"W{area}", area, 16, 16, packed=True))
+        kinds.append(Kind(f"DW{area}", area, 32, 32, packed=True))
+    for area in REGISTER_AREAS:
+        kinds.append(Kind(area, area, 16, 1, packed=False))
+        kinds.append(Kind(f"D{area}", area, 32, 2, packed=False))
+    return {kind.symbol: kind for kind in kinds}
+
+
+KINDS = _kinds()
+
+
+def kind_of(symbol: str, *widths: int) -> Kind:
+    """The kind of ``symbol``; refuses an unknown one, and one whose width is none of ``widths``."""
+    kind = KINDS.get(symbol)
+    if kind is None or (widths and kind.bits not in widths):
+        raise Refusal(RefusalCode.ILLEGAL_FORMAT)
+    return kind

@@ -1,0 +1,72 @@
+"""FACON frames, from the slave's end: found in a stream of bytes, checked, and built.
+
+::
+
+    STX  station  command  data ...     LRC     ETX
+    02   2 hex    2        0..500 char  2 hex   03
+
+LRC is the sum of all bytes from STX to the last of the data, modulo 256 (FACON paper, section 2).
+Hex digits are upper case; other ones make a frame that no PLC takes for its own, and it stays silent,
+as it does for a wrong LRC.
+"""
+
+from __future__ import annotations
+
+STX = 0x02
+ETX = 0x03
+MIN_FRAME = 8
+MAX_FRAME = MIN_FRAME + 500
+
+HEX2 = [f"{value:02X}".encode("ascii") for value in range(256)]
+BYTE_OF = {text: value for value, text in enumerate(HEX2)}
+"""Two upper-case hex digits to their value: stricter than int(), which takes ``+1`` and ``1_``."""
+
+_STX = b"\x02"
+_ETX = b"\x03"
+
+
+class FrameCutter:
+    """Cuts STX..ETX out of bytes in any chunking, with a buffer of at most one frame.
+
+    STX starts a frame afresh wherever it comes, so that noise before it costs nothing. What is longer
+    than a frame can be is dropped to the next STX.
+    """
+
+    def __init__(self) -> None:
+        self._begun = b""
+
+    def feed(self, data: bytes) -> list[tuple[int, bytes]]:
+        """Frames that ``data`` completes, each with its end as an offset in ``data``."""
+        frames: list[tuple[int, bytes]] = []
+        carried = len(self._begun)
+        stream = self._begun + data if carried else data
+        position = 0
+        while (end := stream.find(_ETX, position) + 1) > 0:
+            start = stream.rfind(_STX, position, end)
+            if start >= 0 and MIN_FRAME <= end - start <= MAX_FRAME:
+                frames.append((end - carried, stream[start:end]))
+            position = end
+        start = stream.rfind(_STX, position)
+        self._begun = stream[start:] if start >= 0 and len(stream) - start < MAX_FRAME else b""
+        return frames
+
+    def reset(self) -> None:
+        """Forget a frame that has only begun."""
+        self._begun = b""
+
+
+def station_of(frame: bytes) -> int | None:
+    """The station that a frame is for; None if its station or LRC does not hold."""
+    if BYTE_OF.get(frame[-3:-1]) != sum(frame[:-3]) & 0xFF:
+        return None
+    return BYTE_OF.get(frame[1:3])
+
+
+def sealed(body: bytes) -> bytes:
+    """The frame of ``body``, which goes from STX to the last of the data."""
+    return body + HEX2[sum(body) & 0xFF] + _ETX
+
+
+def readdressed(frame: bytes, station: int) -> bytes:
+    """``frame`` with another station and the LRC for it."""
+    return sealed(_STX + HEX2[station] + frame[3:-3])

@@ -1,0 +1,192 @@
+"""Faults of a line and a PLC, injected on purpose and the same for the same seed.
+
+::
+
+    drop          the answer does not come
+    flip          one of the low 7 bits of one byte of the answer is wrong
+    truncate      the answer ends too early, after its first byte at the soonest
+    noise         1 to 8 random bytes come before the answer, STX and ETX among them
+    duplicate     the answer comes twice
+    late          the answer is held back until the next request was received
+    slow          the answer comes 0.8 s later
+    wrong-station the answer bears another station, its checksum right
+    lying-write   a write is acknowledged and not made
+    echo          what arrives is sent back first, as on a two-wire line
+    power-cut=N   the N-th request to write a program page takes the power away
+
+Each but the last has a probability, drawn for each answer (``echo``: for each chunk of bytes that
+arrives). Each kind draws from a generator of its own, so that one more kind leaves untouched which
+answers the others hit. A dropped answer is hit by nothing else.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from random import Random
+from typing import TYPE_CHECKING
+
+from fatektool.errors import UsageError
+from fatektool.simulator.slave import BROADCAST, Request, RequestKind, Slave
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+PROBABILITY_KINDS = (
+    "drop",
+    "flip",
+    "truncate",
+    "noise",
+    "duplicate",
+    "late",
+    "slow",
+    "wrong-station",
+    "lying-write",
+    "echo",
+)
+POWER_CUT = "power-cut"
+FAULT_KINDS = (*PROBABILITY_KINDS, POWER_CUT)
+
+DEFAULT_SLOW_S = 0.8
+_MAX_NOISE = 8
+_STATIONS = 0xFE
+
+
+@dataclass(frozen=True, slots=True)
+class FaultPlan:
+    """Which faults, how often.
+
+    Args:
+        probabilities: kind to probability, 0 to 1.
+        power_cut: the write of a page, counted from 1, at which the power goes; None for never.
+    """
+
+    probabilities: Mapping[str, float] = field(default_factory=dict)
+    power_cut: int | None = None
+
+
+def parse_faults(texts: Iterable[str]) -> FaultPlan:
+    """A plan from ``KIND=P`` strings; UsageError for anything else."""
+    probabilities: dict[str, float] = {}
+    power_cut = None
+    for text in texts:
+        kind, equals, value = text.partition("=")
+        if kind not in FAULT_KINDS or not equals:
+            raise UsageError(
+                f"no fault {text!r}: write KIND=P, P from 0 to 1, KIND one of"
+                f" {', '.join(PROBABILITY_KINDS)}; or {POWER_CUT}=N"
+            )
+        if kind in probabilities or (kind == POWER_CUT and power_cut is not None):
+            raise UsageError(f"fault {kind} is given twice")
+        if kind == POWER_CUT:
+            if not (value.isascii() and value.isdigit() and int(value)):
+                raise UsageError(f"fault {kind}: the write of a page is counted from 1, not {value!r}")
+            power_cut = int(value)
+        else:
+            probabilities[kind] = _probability(kind, value)
+    return FaultPlan(probabilities, power_cut)
+
+
+def _probability(kind: str, text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0 <= value <= 1:  # refuses NaN too
+        raise UsageError(f"fault {kind}: a probability is a number from 0 to 1, not {text!r}")
+    return value
+
+
+@dataclass(slots=True)
+class SpoiledAnswer:
+    """What becomes of one answer.
+
+    Args:
+        copies: the bytes to send, one entry for each time; none if it is dropped.
+        delay_s: how much later than due.
+        late: True if it is held back until the next request.
+    """
+
+    copies: list[bytes]
+    delay_s: float = 0.0
+    late: bool = False
+
+
+class Faults:
+    """A plan at work: shared by all connections of one simulator, as the mains are.
+
+    Args:
+        plan: which faults, how often.
+        seed: the same seed and the same requests give the same faults.
+        slow_s: the delay of a slow answer.
+
+    ``counts`` tells how often each kind struck.
+    """
+
+    def __init__(self, plan: FaultPlan, *, seed: int = 0, slow_s: float = DEFAULT_SLOW_S) -> None:
+        self.plan = plan
+        self.slow_s = slow_s
+        self.powered = True
+        self.counts = dict.fromkeys((*plan.probabilities, *([POWER_CUT] if plan.power_cut else [])), 0)
+        self._random = {kind: Random(f"{kind} {seed}") for kind in plan.probabilities}  # noqa: S311
+        self._page_writes = 0
+
+    def power_on(self) -> None:
+        """End a power cut; what the memory held then, it holds now."""
+        self.powered = True
+
+    def echoes(self) -> bool:
+        """Whether the chunk of bytes that arrives is sent back."""
+        return self._strikes("echo")
+
+    def answer(self, slave: Slave, request: Request) -> bytes | None:
+        """Have ``request`` executed, or not: the power may go, a write may be a lie."""
+        if request.kind is RequestKind.OTHER:
+            return slave.answer(request)
+        addressed = slave.plcs.get(request.station)
+        here = addressed is not None or request.station == BROADCAST
+        if here and request.kind is RequestKind.PAGE_WRITE:
+            self._page_writes += 1
+            if self._page_writes == self.plan.power_cut:
+                self.counts[POWER_CUT] += 1
+                self.powered = False
+                return None
+        if addressed is None or not self._strikes("lying-write"):
+            return slave.answer(request)
+        addressed.acknowledge_only = True
+        try:
+            return slave.answer(request)
+        finally:
+            addressed.acknowledge_only = False
+
+    def spoil(self, slave: Slave, request: Request, answer: bytes) -> SpoiledAnswer:
+        """Do to an answer what was drawn for it."""
+        if self._strikes("drop"):
+            return SpoiledAnswer([])
+        if self._strikes("wrong-station"):
+            other = (request.station + self._random["wrong-station"].randrange(_STATIONS - 1)) % _STATIONS + 1
+            answer = slave.readdressed(answer, other)
+        if self._strikes("flip"):
+            spoiled = bytearray(answer)
+            random = self._random["flip"]
+            spoiled[random.randrange(len(answer))] ^= 1 << random.randrange(7)
+            answer = bytes(spoiled)
+        if self._strikes("truncate"):
+            answer = answer[: self._random["truncate"].randrange(1, len(answer))]
+        if self._strikes("noise"):
+            random = self._random["noise"]
+            answer = bytes(map(self._noise, range(random.randint(1, _MAX_NOISE)))) + answer
+        copies = [answer, answer] if self._strikes("duplicate") else [answer]
+        delay_s = self.slow_s if self._strikes("slow") else 0.0
+        return SpoiledAnswer(copies, delay_s, late=self._strikes("late"))
+
+    def _noise(self, _: int) -> int:
+        # One byte in four delimits a frame: plain random bytes would hardly ever do so.
+        random = self._random["noise"]
+        return random.choice((0x02, 0x03)) if random.random() < 1 / 4 else random.randrange(256)
+
+    def _strikes(self, kind: str) -> bool:
+        random = self._random.get(kind)
+        if random is None or random.random() >= self.plan.probabilities[kind]:
+            return False
+        self.counts[kind] += 1
+        return True

@@ -1,0 +1,66 @@
+"""The seam between a line and a protocol: what any slave over simulated PLCs must offer.
+
+A line (see ``line``) carries bytes, paces them and spoils them; it knows no protocol. A slave cuts
+requests out of the bytes and answers them from its PLCs. To add a protocol, write one class with
+these four methods over ``SimulatedPlc``'s operations.
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fatektool.simulator.plc import SimulatedPlc
+
+BROADCAST = 0
+
+
+class RequestKind(Enum):
+    """What a request does, as far as the fault layer must know."""
+
+    OTHER = "other"
+    WRITE = "write"
+    PAGE_WRITE = "page-write"
+
+
+class Request(NamedTuple):
+    """One request cut out of the stream, its checksum already right.
+
+    Attributes:
+        end: how many bytes of the chunk just fed had crossed the wire with its last one.
+        raw: the frame.
+        station: 0 broadcast, 1 to 254.
+        command: the command as it stands in the frame.
+        data: what follows the command, without checksum.
+        kind: what it does.
+    """
+
+    end: int
+    raw: bytes
+    station: int
+    command: bytes
+    data: bytes
+    kind: RequestKind
+
+
+class Slave(Protocol):
+    """One connection's view of the PLCs: a framing buffer of its own over shared PLCs."""
+
+    @property
+    def plcs(self) -> Mapping[int, SimulatedPlc]:
+        """The PLCs of this line by station."""
+
+    def cut(self, data: bytes) -> list[Request]:
+        """Take bytes, whatever the chunking; give the requests that they complete."""
+
+    def answer(self, request: Request) -> bytes | None:
+        """Execute a request; None where a PLC is silent."""
+
+    def readdressed(self, answer: bytes, station: int) -> bytes:
+        """The same answer as another station would send it, its checksum right."""
+
+    def reset(self) -> None:
+        """Forget an unfinished request."""

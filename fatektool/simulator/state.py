@@ -1,0 +1,217 @@
+"""The memory of simulated PLCs in a file, so that it outlives the process.
+
+A JSON document; what is zero, off, enabled or an empty page (all FF) is left out::
+
+    {"schema": "fatektool.simulator/1",
+     "plcs": [{"station": 1, "model": "fbe-28mc", "ladder_words": 13184,
+               "flags": ["running"],                    in the order of plc.FLAGS
+               "on": {"Y": [0, 3]},                     discretes that are on
+               "disabled": {"X": [16]},
+               "inputs": [50],                          terminals that are on
+               "registers": {"R": {"12": 4261}},
+               "pages": {"0": "4642 .."}}]}             256 hex digits each
+
+A file is taken as a whole or refused with one line that names it and the fault. It is written beside
+its place and renamed into it, so that a process killed at any moment leaves either the state before or
+after. It is not synced to the disk: it stands for a PLC's memory, not for somebody's only backup, and a
+restore writes it some two hundred times.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from fatektool.errors import DataError
+from fatektool.simulator.models import MAX_LADDER_WORDS, MODELS, PAGE_BYTES
+from fatektool.simulator.plc import FLAGS, MAX_STATION, SimulatedPlc
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+SCHEMA = "fatektool.simulator/1"
+_EMPTY_PAGE = b"\xff" * PAGE_BYTES
+_PAGE = re.compile(f"[0-9A-Fa-f]{{{2 * PAGE_BYTES}}}")
+_PLC_KEYS = ("station", "model", "ladder_words", "flags", "on", "disabled", "inputs", "registers", "pages")
+
+
+def dump_state(plcs: Iterable[SimulatedPlc]) -> str:
+    """The document of these PLCs."""
+    document = {"schema": SCHEMA, "plcs": [_plc_to_json(plc) for plc in plcs]}
+    return json.dumps(document, separators=(",", ":")) + "\n"
+
+
+def parse_state(text: str | bytes, name: str) -> list[SimulatedPlc]:
+    """The PLCs of a document; ``name`` is what an error calls it."""
+    return _Reader(name).plcs(text)
+
+
+class StateFile:
+    """The file in which a simulator keeps its PLCs.
+
+    Args:
+        path: the file; it need not exist.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        self.path = Path(path)
+        self._saved_revision: tuple[int, ...] | None = None
+
+    def load(self) -> list[SimulatedPlc] | None:
+        """The PLCs in the file; None if there is none yet."""
+        try:
+            content = self.path.read_bytes()
+        except FileNotFoundError:
+            return None
+        except OSError as error:
+            raise DataError(f"{self.path}: cannot be read: {error.strerror}") from error
+        plcs = parse_state(content, str(self.path))
+        self._saved_revision = tuple(plc.revision for plc in plcs)
+        return plcs
+
+    def save_if_changed(self, plcs: Mapping[int, SimulatedPlc]) -> bool:
+        """Write the file unless it holds this very state; True if it was written."""
+        revision = tuple([plc.revision for plc in plcs.values()])
+        if revision == self._saved_revision:
+            return False
+        # A link to the file stays a link; the temporary file is in the folder of what it points to.
+        target = self.path.resolve()
+        temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
+        try:
+            try:
+                temporary.write_text(dump_state(plcs.values()), encoding="ascii")
+                temporary.replace(target)
+            except BaseException:
+                temporary.unlink(missing_ok=True)
+                raise
+        except OSError as error:
+            raise DataError(f"{self.path}: cannot be written: {error.strerror}") from error
+        self._saved_revision = revision
+        return True
+
+
+def _plc_to_json(plc: SimulatedPlc) -> dict[str, Any]:
+    memory = plc.memory
+    return {
+        "station": plc.station,
+        "model": plc.model.name,
+        "ladder_words": plc.model.ladder_words,
+        "flags": [flag for flag in FLAGS if getattr(plc, flag)],
+        "on": _addresses(memory.status),
+        "disabled": _addresses(memory.disabled),
+        "inputs": [address for address, value in enumerate(memory.inputs) if value],
+        "registers": {
+            area: {str(address): value for address, value in enumerate(table) if value}
+            for area, table in memory.registers.items()
+            if any(table)
+        },
+        "pages": {
+            str(number): page.hex().upper() for number, page in enumerate(plc.pages) if page != _EMPTY_PAGE
+        },
+    }
+
+
+def _addresses(tables: Mapping[str, bytearray]) -> dict[str, list[int]]:
+    return {
+        area: [address for address, value in enumerate(table) if value]
+        for area, table in tables.items()
+        if any(table)
+    }
+
+
+class _Reader:
+    """Checks a document part by part; every complaint names the file."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def plcs(self, text: str | bytes) -> list[SimulatedPlc]:
+        try:
+            document = json.loads(text)
+        except (ValueError, RecursionError):
+            self._fail("is no JSON document")
+        if not isinstance(document, dict) or document.get("schema") != SCHEMA:
+            self._fail(f"is no simulator state: its schema is not {SCHEMA}")
+        self._keys(document, ("schema", "plcs"), "the document")
+        if not isinstance(document["plcs"], list) or not document["plcs"]:
+            self._fail("plcs is not a list of at least one PLC")
+        plcs: dict[int, SimulatedPlc] = {}
+        for part in document["plcs"]:
+            plc = self._plc(part)
+            if plc.station in plcs:
+                self._fail(f"station {plc.station} is there twice")
+            plcs[plc.station] = plc
+        return list(plcs.values())
+
+    def _plc(self, part: Any) -> SimulatedPlc:
+        if not isinstance(part, dict):
+            self._fail("a PLC is not an object")
+        self._keys(part, _PLC_KEYS, "a PLC")
+        station = self._number(part["station"], range(1, MAX_STATION + 1), "station")
+        model = MODELS.get(part["model"]) if isinstance(part["model"], str) else None
+        if model is None:
+            self._fail(f"station {station}: no model {part['model']!r}")
+        words = self._number(part["ladder_words"], range(1, MAX_LADDER_WORDS + 1), "ladder_words")
+        model = replace(model, ladder_words=words)
+        pages = [_EMPTY_PAGE] * model.page_count
+        for number, text in self._table(part["pages"], len(pages), f"station {station}: pages"):
+            pages[number] = self._page(text, number)
+        plc = SimulatedPlc(station, model, pages=pages)
+        if not isinstance(part["flags"], list) or not all(flag in FLAGS for flag in part["flags"]):
+            self._fail(f"station {station}: flags is not a list of {', '.join(FLAGS)}")
+        for flag in part["flags"]:
+            setattr(plc, flag, True)
+        for key, tables in (("on", plc.memory.status), ("disabled", plc.memory.disabled)):
+            for area, table in self._areas(part[key], tables, f"station {station}: {key}"):
+                self._switch_on(area, table, f"station {station}: {key}")
+        self._switch_on(part["inputs"], plc.memory.inputs, f"station {station}: inputs")
+        for values, registers in self._areas(
+            part["registers"], plc.memory.registers, f"station {station}: registers"
+        ):
+            for address, value in self._table(values, len(registers), f"station {station}: registers"):
+                registers[address] = self._number(value, range(0x10000), "a register")
+        return plc
+
+    def _areas(self, part: Any, tables: Mapping[str, Any], what: str) -> list[tuple[Any, Any]]:
+        if not isinstance(part, dict) or not part.keys() <= tables.keys():
+            self._fail(f"{what} is not an object of {', '.join(tables)}")
+        return [(values, tables[area]) for area, values in part.items()]
+
+    def _table(self, part: Any, size: int, what: str) -> list[tuple[int, Any]]:
+        if not isinstance(part, dict):
+            self._fail(f"{what}: not an object")
+        entries = []
+        for key, value in part.items():
+            # The plainest spelling alone, so that one address cannot be there twice.
+            if not (key.isascii() and key.isdigit() and len(key) <= len(str(size)) and str(int(key)) == key):
+                self._fail(f"{what}: {key!r} is no address")
+            entries.append((self._number(int(key), range(size), what), value))
+        return entries
+
+    def _switch_on(self, addresses: Any, table: bytearray, what: str) -> None:
+        if not isinstance(addresses, list):
+            self._fail(f"{what}: not a list of addresses")
+        for address in addresses:
+            table[self._number(address, range(len(table)), what)] = 1
+
+    def _page(self, text: Any, number: int) -> bytes:
+        if not isinstance(text, str) or not _PAGE.fullmatch(text):
+            self._fail(f"page {number} is not of {2 * PAGE_BYTES} hex digits")
+        return bytes.fromhex(text)
+
+    def _number(self, value: Any, allowed: range, what: str) -> int:
+        # True is an int to Python, and no number in a document.
+        if not isinstance(value, int) or isinstance(value, bool) or value not in allowed:
+            self._fail(f"{what}: expected {allowed.start} to {allowed.stop - 1}, got {value!r}")
+        return value
+
+    def _keys(self, part: Mapping[str, Any], expected: tuple[str, ...], what: str) -> None:
+        if part.keys() != set(expected):
+            self._fail(f"{what} has the keys {', '.join(part) or 'none'}, expected {', '.join(expected)}")
+
+    def _fail(self, fault: str) -> NoReturn:
+        raise DataError(f"{self._name}: {fault}", file=self._name)
