@@ -42,6 +42,13 @@ _DOOR = re.compile(r"(?:\[([^\]]+)\]|([^:]*)):(\d+)|(\d+)")
 )
 @click.option("--ladder-words", type=click.IntRange(1, 65535), help="Another size of the program memory.")
 @click.option("--program", type=PATH, metavar="BACKUP", help="The program in the PLCs.")
+@click.option(
+    "--program-seed",
+    type=int,
+    default=1,
+    show_default=True,
+    help="Which demonstration program, without BACKUP.",
+)
 @click.option("--state", type=PATH, metavar="FILE", help="Keep the PLCs' memory in FILE.")
 @click.option(
     "--set", "flags", multiple=True, type=click.Choice(FLAGS), help="A state of the PLCs; repeat for more."
@@ -72,6 +79,7 @@ def simulate_command(
     model: str | None,
     ladder_words: int | None,
     program: Path | None,
+    program_seed: int,
     state: Path | None,
     flags: tuple[str, ...],
     baud: int | None,
@@ -103,6 +111,7 @@ def simulate_command(
         station or None,
         model,
         **wanted,
+        program_seed=program_seed,
         program_commands=not no_program_commands,
         error_character=not no_error_character,
         state=state,

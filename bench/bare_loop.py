@@ -1,0 +1,58 @@
+"""The least that could read a program: write a request, read as many bytes as the answer has, again.
+
+It checks nothing. Usage: bare_loop.py TARGET PAGES; prints ``{"duration_s": …}``.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import socket
+import sys
+import time
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+ANSWER_BYTES = 8 + 1 + 256
+
+
+def requests(pages: int) -> list[bytes]:
+    """All requests, ready to be sent."""
+    found = []
+    for page in range(pages):
+        body = b"\x02014F%04X" % page
+        found.append(b"%b%02X\x03" % (body, sum(body) & 0xFF))
+    return found
+
+
+def loop(todo: list[bytes], write: Callable[[bytes], object], read: Callable[[int], bytes]) -> float:
+    """Send all and read all; seconds from the first byte to the last."""
+    began = time.perf_counter()
+    for request in todo:
+        write(request)
+        missing = ANSWER_BYTES
+        while missing:
+            missing -= len(read(missing))
+    return time.perf_counter() - began
+
+
+def main() -> None:
+    """Run the loop on a TCP or a pty target."""
+    target, pages = sys.argv[1], int(sys.argv[2])
+    todo = requests(pages)
+    if target.startswith("tcp://"):
+        host, _, port = target.removeprefix("tcp://").rpartition(":")
+        with socket.create_connection((host, int(port))) as connected:
+            connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            took = loop(todo, connected.sendall, connected.recv)
+    else:
+        descriptor = os.open(target, os.O_RDWR | os.O_NOCTTY)
+        took = loop(todo, lambda data: os.write(descriptor, data), lambda size: os.read(descriptor, size))
+        os.close(descriptor)
+    print(json.dumps({"duration_s": took}))
+
+
+if __name__ == "__main__":
+    main()

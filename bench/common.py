@@ -1,0 +1,76 @@
+"""What the benchmarks share: a simulator in a process of its own, and runs that are timed from outside."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+HERE = Path(__file__).parent
+LARGEST = 65535  # words: 1025 pages
+
+
+class Timing(NamedTuple):
+    """One run: seconds from first request to last answer, and of the whole process."""
+
+    transfer_s: float
+    process_s: float
+
+
+@contextlib.contextmanager
+def simulator(*options: str) -> Iterator[str]:
+    """A simulator as long as the context lasts; gives its target."""
+    command = [sys.executable, "-m", "fatektool", "simulate", "--json", *options]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        try:
+            assert process.stdout is not None  # noqa: S101  # for the type checker
+            text = ""
+            while not text.endswith("}\n"):
+                text += process.stdout.readline()
+            yield json.loads(text)["listening"][0]
+        finally:
+            process.terminate()
+
+
+def bare(target: str, pages: int, line: str = "") -> Timing:
+    """The bare loop, in a process of its own."""
+    return _timed([sys.executable, str(HERE / "bare_loop.py"), target, str(pages), line])
+
+
+def tool(target: str, *options: str) -> Timing:
+    """A single-pass backup by the command line."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = str(Path(folder) / "backup.json")
+        command = [sys.executable, "-m", "fatektool", "backup", file, "-p", target]
+        return _timed([*command, "--single-pass", "--json", *options])
+
+
+def _timed(command: list[str]) -> Timing:
+    began = time.perf_counter()
+    done = subprocess.run(command, stdout=subprocess.PIPE, check=True)
+    process_s = time.perf_counter() - began
+    document: dict[str, Any] = json.loads(done.stdout)
+    return Timing(document["duration_s"], process_s)
+
+
+def best(timings: list[Timing]) -> Timing:
+    """The least of each, as noise only adds."""
+    return Timing(min(t.transfer_s for t in timings), min(t.process_s for t in timings))
+
+
+def row(name: str, tool_took: Timing, bare_took: Timing, limit: float) -> str:
+    """One line of a table, with the limit beside the ratio."""
+    transfer = tool_took.transfer_s / bare_took.transfer_s
+    process = tool_took.process_s / bare_took.process_s
+    return (
+        f"{name:<22} bare {bare_took.transfer_s:8.3f} s  tool {tool_took.transfer_s:8.3f} s  "
+        f"transfer {transfer:.3f}  process {process:.3f}  limit {limit:.2f}"
+    )

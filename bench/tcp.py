@@ -1,0 +1,26 @@
+"""What does a page cost beside a bare socket loop? 1025 pages over TCP on this machine, no pace.
+
+Usage: python bench/tcp.py
+"""
+
+from __future__ import annotations
+
+from common import LARGEST, bare, best, row, simulator, tool
+
+PAGES = 1025
+LIMIT = 1.25
+RUNS = 7
+
+
+def main() -> None:
+    """Print one row."""
+    with simulator("--tcp", "127.0.0.1:0", "--ladder-words", str(LARGEST)) as target:
+        bares, tools = [], []
+        for _ in range(RUNS):
+            bares.append(bare(target, PAGES))
+            tools.append(tool(target))
+    print(row(f"TCP, {PAGES} pages", best(tools), best(bares), LIMIT))
+
+
+if __name__ == "__main__":
+    main()

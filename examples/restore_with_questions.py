@@ -1,0 +1,52 @@
+"""Restore a backup with a question of your own, and tell what the errors say.
+
+Usage: python restore_with_questions.py TARGET FILE
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import fatektool
+from fatektool.errors import RestoreIncomplete
+from fatektool.jobs.restore import RestoreOptions
+
+if TYPE_CHECKING:
+    from fatektool.jobs.restore import RestorePlan
+
+
+def agree(plan: RestorePlan, old_program: Path | None) -> bool:
+    """Ask whatever must be asked on your machine; this one agrees to small changes alone."""
+    print(f"{len(plan.pages)} pages to write; the old program lies in {old_program}")
+    return len(plan.comparison.pages) < 100
+
+
+def main() -> int:
+    """Restore, changed pages only, and put the old program back if that fails."""
+    target, file = sys.argv[1], Path(sys.argv[2])
+    options = RestoreOptions(stop=True, run=True, changed_only=True, rollback=True)
+    with fatektool.connect(target) as plc:
+        try:
+            result = fatektool.restore(
+                plc,
+                fatektool.load_backup(file),
+                file,
+                confirm=agree,
+                options=options,
+                safety_folder=file.parent,
+            )
+        except RestoreIncomplete as error:
+            print(f"half way: {error.details['pages_written']} hold the new program", file=sys.stderr)
+            raise
+    print(f"{result.pages_written} pages written, PLC in {result.mode_after.upper()}")
+    return 0
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except fatektool.FatektoolError as error:
+        print(error, file=sys.stderr)
+        sys.exit(error.exit_code)
