@@ -67,7 +67,7 @@ def _kinds() -> dict[str, Kind]:
 
 KINDS: Final[dict[str, Kind]] = _kinds()
 
-_WRITTEN = re.compile(r"([A-Za-z]{1,3})([0-9]{1,5})", re.ASCII)
+_WRITTEN = re.compile(r"([A-Za-z]{1,3})([0-9]{1,12})", re.ASCII)
 
 
 @dataclass(frozen=True, slots=True, order=True)

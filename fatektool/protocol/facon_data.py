@@ -330,7 +330,8 @@ def answer_data(request: Request[A], answer: A) -> bytes:
 def echo_may_pass(request: Request[A]) -> bool:
     """True if a request's own data reads as an answer to it.
 
-    The echo of 4E, of STOP and of some 48 reads as a good answer, that of RUN as error 1.
+    The echo of 4E and of STOP reads as a good answer, so does that of one DD or DF under 46 and of some under
+    48, which are all hex digits; that of RUN reads as error 1.
     """
     try:
         parse_answer(request, request_data(request))

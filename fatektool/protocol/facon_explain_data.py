@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.errors import FrameError
 from fatektool.protocol.commands import (
+    COMMAND_WORDS,
+    PAGE_BYTES,
     Command,
     ControlDiscrete,
     Loopback,
@@ -21,7 +23,7 @@ from fatektool.protocol.commands import (
     WriteRegisters,
 )
 from fatektool.protocol.explain import Field
-from fatektool.protocol.facon_text import CHARS, HEX_DIGITS, element_text, unhex
+from fatektool.protocol.facon_text import CHARS, HEX_DIGITS, element_text, take_value, unhex
 from fatektool.protocol.plc_errors import MEANINGS
 from fatektool.protocol.status import BriefStatus, DetailedStatus, StatusFlags
 
@@ -40,12 +42,17 @@ _ACKNOWLEDGED: Final = {
     Command.WRITE_PAGE,
 }
 
-_READS: Final[dict[int, bytes]] = {
-    Command.READ_DISABLED: b"01",
-    Command.READ_DISCRETES: b"01",
-    Command.READ_REGISTERS: HEX_DIGITS,
-    Command.READ_MIXED: HEX_DIGITS,
+_READS: Final[dict[int, tuple[bytes, int]]] = {
+    Command.READ_DISABLED: (b"01", 1),
+    Command.READ_DISCRETES: (b"01", 1),
+    Command.READ_REGISTERS: (HEX_DIGITS, 4),
+    Command.READ_MIXED: (HEX_DIGITS, 1),
 }
+"""The characters that an answer's values are written in, and the fewest that a value takes."""
+
+_MOST_CHARS: Final = 256
+"""What the values of any read take at most: 256 discretes, or 64 words."""
+
 _WHOLE: Final[dict[int, int]] = {Command.READ_PAGE: 256, Command.DETAILED_STATUS: 128}
 
 
@@ -68,8 +75,7 @@ class _Cutter:
         self.cut(CHARS[element.kind.bits], f"{element}", _shown(element, value))
 
     def page(self, data: bytes) -> None:
-        words = memoryview(data).cast("B")
-        self.cut(2 * len(data), "page", f"{len(words) // 2} words, first {data[:8].hex(' ', 2).upper()} …")
+        self.cut(2 * len(data), "page", f"{len(data) // 2} words, first {data[:8].hex(' ', 2).upper()} …")
 
 
 def request_fields(  # noqa: C901  # a case a command
@@ -131,6 +137,8 @@ def answer_fields(command: int, data: bytes, asked: Request[Any] | None) -> tupl
         meaning = MEANINGS.get(int(data, 16), "a code that no paper lists")
         cutter.cut(1, "error", f"REFUSED: {meaning}")
         return tuple(cutter.fields)
+    if command not in COMMAND_WORDS:
+        raise FrameError(f"command {command:02X} is not in the paper", raw=data)
     if len(data) != _WHOLE.get(command):  # those two may come without the error character
         if not data.startswith(b"0"):
             raise FrameError("an answer begins with its error character", raw=data)
@@ -146,23 +154,36 @@ def _values(cutter: _Cutter, command: int, rest: bytes, asked: Request[Any] | No
     elif command == Command.BRIEF_STATUS:
         brief = BriefStatus.parse(unhex(rest))
         cutter.cut(2, "status 1", flag_words(brief.flags))
-        cutter.cut(2, "status 2", brief.model or "a model that is not in the paper")
+        cutter.cut(2, "status 2", brief.model or "a code that names no model")
         cutter.cut(2, "status 3", "reserved")
     elif command == Command.DETAILED_STATUS:
         _detailed(cutter, DetailedStatus.parse(unhex(rest)))
     elif command == Command.READ_PAGE:
-        cutter.page(unhex(rest))
-    elif command not in _READS or not rest or rest.translate(None, _READS[command]):
-        raise FrameError("no answer to a read has such data", raw=rest)
+        page = unhex(rest)
+        if len(page) != PAGE_BYTES:
+            raise FrameError(f"expected a page of {PAGE_BYTES} bytes, got {len(page)}", raw=rest)
+        cutter.page(page)
     else:
-        elements = list(_elements(asked))
-        if sum(CHARS[element.kind.bits] for element in elements) == len(rest):
-            for element in elements:
-                chars = CHARS[element.kind.bits]
-                text = cutter.data[cutter.at : cutter.at + chars]
-                cutter.value(element, int(text, 16))
+        _read(cutter, command, rest, list(_elements(asked)))
+
+
+def _read(cutter: _Cutter, command: int, rest: bytes, elements: list[Element]) -> None:
+    """The values of a read; ``elements`` is empty if it is not known what was asked."""
+    characters, fewest = _READS[command]
+    if not 0 < len(rest) <= _MOST_CHARS or len(rest) % fewest or rest.translate(None, characters):
+        raise FrameError("no answer to a read has such data", raw=rest)
+    if not elements:
+        cutter.cut(len(rest), "values", "of elements that the request names")
+        return
+    chars = sum(CHARS[element.kind.bits] for element in elements)
+    if len(rest) != chars:
+        raise FrameError(f"expected {chars} characters of values, as was asked, got {len(rest)}", raw=rest)
+    for element in elements:
+        value = take_value(element, cutter.data[cutter.at : cutter.at + CHARS[element.kind.bits]])
+        if command == Command.READ_DISABLED:
+            cutter.cut(1, f"{element}", "disabled" if value else "enabled")
         else:
-            cutter.cut(len(rest), "values", "of elements that the request names")
+            cutter.value(element, value)
 
 
 def _elements(asked: Request[Any] | None) -> Iterable[Element]:

@@ -9,7 +9,8 @@ stands a pseudo-header of four bytes::
 
     version 01 · direction 00 sent, 01 received · protocol 01 FACON, 02 M-series, 03 Modbus · 00
 
-Bytes that came in pieces make one record up to the next request or time-out, so that a frame is seldom split.
+Bytes that came in pieces make one record up to the next request or time-out, so that a frame is seldom split;
+of a line that babbles on, a record holds 32 KiB.
 A record is written when it is complete: a program that dies keeps all but the last.
 """
 
@@ -18,13 +19,14 @@ from __future__ import annotations
 import json
 import struct
 import time
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, BinaryIO, Final, Protocol
 
 from fatektool.errors import TransportError, UsageError
 from fatektool.transport.base import Transport
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
 LINK_TYPE: Final = 147
@@ -32,6 +34,7 @@ PCAP_MAGIC: Final = 0xA1B23C4D  # nanoseconds, in the writer's byte order
 PROTOCOL_CODES: Final = {"facon": 1, "mseries": 2, "modbus-rtu": 3, "modbus-ascii": 3, "modbus-tcp": 3}
 SENT: Final = "tx"
 RECEIVED: Final = "rx"
+_MAX_RECORD: Final = 1 << 15
 _PCAP_HEADER: Final = struct.Struct("<IHHiIII")
 _RECORD_HEADER: Final = struct.Struct("<IIII")
 
@@ -156,26 +159,36 @@ class TracedTransport(Transport):
         self._inner.renew()
 
     def close(self) -> None:
-        """Write the last record and close both."""
-        self._flush()
-        self._inner.close()
-        self._writer.close()
+        """Write the last record and close both, whatever becomes of the record."""
+        try:
+            self._flush()
+        finally:
+            self._inner.close()
+            with _writing():
+                self._writer.close()
 
     def _keep(self, data: bytes) -> None:
         if not self._received:
             self._received_at = self._time_ns()
         self._received += data
+        if len(self._received) >= _MAX_RECORD:
+            self._flush()
 
     def _flush(self) -> None:
-        if self._received:
-            data = bytes(self._received)
-            self._received.clear()
-            self._record(self._received_at, RECEIVED, data)
+        data = bytes(self._received)
+        self._received.clear()
+        for at in range(0, len(data), _MAX_RECORD):
+            self._record(self._received_at, RECEIVED, data[at : at + _MAX_RECORD])
 
     def _record(self, time_ns: int, direction: str, data: bytes) -> None:
-        try:
+        with _writing():
             self._writer.record(time_ns, direction, data)
-        except (OSError, ValueError) as error:
-            raise UsageError(
-                f"cannot write the trace: {getattr(error, 'strerror', None) or error}"
-            ) from error
+
+
+@contextmanager
+def _writing() -> Iterator[None]:
+    """The operating system's errors in the project's words."""
+    try:
+        yield
+    except (OSError, ValueError) as error:
+        raise UsageError(f"cannot write the trace: {getattr(error, 'strerror', None) or error}") from error

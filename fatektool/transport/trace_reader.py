@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import struct
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
@@ -16,7 +17,11 @@ if TYPE_CHECKING:
 _GLOBAL: Final = 24
 _RECORD: Final = 16
 _PSEUDO_HEADER: Final = 4
+_DIRECTIONS: Final = {b"\x01\x00": SENT, b"\x01\x01": RECEIVED}
+"""A pseudo-header's first two bytes, version and direction."""
 _MAX_PACKET: Final = 1 << 20
+_TIME: Final = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?Z", re.ASCII)
+_HINT: Final = "expected a .ndjson or .pcap file that --trace wrote"
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,11 +63,12 @@ def _read_ndjson(data: bytes, name: str) -> Iterator[TraceRecord]:
             record = TraceRecord(str(entry["time"]), str(entry["direction"]), bytes.fromhex(entry["hex"]))
         except (ValueError, KeyError, TypeError, RecursionError) as error:
             raise DataError(
-                f"{name}: line {number}: no trace record: {type(error).__name__}",
-                hint="expected a .ndjson or .pcap file that --trace wrote",
+                f"{name}: line {number}: no trace record: {type(error).__name__}", hint=_HINT
             ) from error
         if record.direction not in {SENT, RECEIVED}:
-            raise DataError(f"{name}: line {number}: expected direction tx or rx")
+            raise DataError(f"{name}: line {number}: expected direction tx or rx", hint=_HINT)
+        if not _TIME.fullmatch(record.time):
+            raise DataError(f"{name}: line {number}: expected a time such as {time_text(0)}", hint=_HINT)
         yield record
 
 
@@ -78,9 +84,9 @@ def _read_pcap(data: bytes, name: str) -> Iterator[TraceRecord]:
             raise DataError(f"{name}: packet {number} is cut off")
         seconds, nanoseconds, size, _ = struct.unpack_from(order + "IIII", data, at)
         packet = data[at + _RECORD : at + _RECORD + size]
-        if size > _MAX_PACKET or len(packet) != size or size < _PSEUDO_HEADER:
+        direction = _DIRECTIONS.get(packet[:2])
+        if not _PSEUDO_HEADER <= size <= _MAX_PACKET or len(packet) != size or direction is None:
             raise DataError(f"{name}: packet {number} is cut off or damaged")
-        direction = RECEIVED if packet[1] else SENT
         yield TraceRecord(
             time_text(seconds * 1_000_000_000 + nanoseconds), direction, packet[_PSEUDO_HEADER:]
         )

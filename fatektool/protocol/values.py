@@ -1,0 +1,141 @@
+"""Raw bits as typed values and back: ``u16``, ``i16``, ``bcd``, ``hex``, ``u32``, ``i32``, ``f32``, ``bool``.
+
+A PLC knows bits alone; what they mean is the program author's. So a type is asked for with the element, and
+without one an element is unsigned, a discrete a bool.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import struct
+from enum import Enum
+from typing import Final
+
+from fatektool.errors import DataError, UsageError
+
+Value = bool | int | float | str
+
+
+class ValueType(Enum):
+    """How bits are read."""
+
+    BOOL = "bool"
+    U16 = "u16"
+    I16 = "i16"
+    U32 = "u32"
+    I32 = "i32"
+    F32 = "f32"
+    BCD = "bcd"
+    HEX = "hex"
+
+    @property
+    def bits(self) -> int | None:
+        """How many bits it takes; None for as many as the element has."""
+        return _BITS[self]
+
+
+_BITS: Final = {
+    ValueType.BOOL: 1,
+    ValueType.U16: 16,
+    ValueType.I16: 16,
+    ValueType.U32: 32,
+    ValueType.I32: 32,
+    ValueType.F32: 32,
+    ValueType.BCD: None,
+    ValueType.HEX: None,
+}
+_ON: Final = {"on": 1, "true": 1, "1": 1, "off": 0, "false": 0, "0": 0}
+_INTEGER: Final = re.compile(r"[+-]?(0[xX][0-9A-Fa-f]+|0[bB][01]+|[0-9]+)", re.ASCII)
+_REAL: Final = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?", re.ASCII)
+
+
+def default_type(bits: int) -> ValueType:
+    """The type of an element of so many bits when none is asked for."""
+    return {1: ValueType.BOOL, 16: ValueType.U16, 32: ValueType.U32}[bits]
+
+
+def decode(raw: int, kind: ValueType, bits: int) -> Value:
+    """Bits as a value.
+
+    Args:
+        raw: unsigned.
+        kind: its type.
+        bits: the element's width.
+
+    Raises:
+        DataError: the bits are no such value: a digit past 9 in BCD, a float that is no number.
+    """
+    match kind:
+        case ValueType.BOOL:
+            return bool(raw)
+        case ValueType.I16 | ValueType.I32:
+            return raw - (1 << bits) if raw >> (bits - 1) else raw
+        case ValueType.F32:
+            number: float = struct.unpack(">f", raw.to_bytes(4, "big"))[0]
+            if not math.isfinite(number):
+                raise DataError(f"{raw:08X} is no number as f32")
+            return number
+        case ValueType.BCD:
+            digits = f"{raw:0{bits // 4}X}"
+            if not digits.isdecimal():
+                raise DataError(f"{digits} is no BCD number")
+            return int(digits)
+        case ValueType.HEX:
+            return f"{raw:0{bits // 4}X}"
+        case _:
+            return raw
+
+
+def encode(text: str, kind: ValueType | None, bits: int) -> int:
+    """A value as people write it, as unsigned bits.
+
+    Args:
+        text: ``4261``, ``-1``, ``0x5555``, ``1.5``, ``on``.
+        kind: its type; None for an element's own, which takes signed and unsigned numbers.
+        bits: the element's width.
+
+    Raises:
+        UsageError: it is no such value, or does not fit.
+    """
+    text = text.strip()
+    if bits == 1:
+        if text.lower() not in _ON:
+            raise UsageError(f"value {text!r}: expected on or off, true or false, 1 or 0")
+        return _ON[text.lower()]
+    if kind is ValueType.F32:
+        return _float_bits(text)
+    if kind is ValueType.HEX:
+        text = "0x" + text.removeprefix("0x").removeprefix("0X")
+    if not _INTEGER.fullmatch(text):
+        raise UsageError(f"value {text!r}: expected a whole number such as 4261, -1 or 0x10A5")
+    number = int(text, 10 if text.lstrip("+-").isdecimal() else 0)
+    least, most = _range(kind, bits)
+    if not least <= number <= most:
+        raise UsageError(
+            f"value {text}: expected {least} to {most} for {kind.value if kind else f'{bits} bits'}"
+        )
+    if kind is ValueType.BCD:
+        return int(str(number), 16)
+    return number & ((1 << bits) - 1)
+
+
+def _range(kind: ValueType | None, bits: int) -> tuple[int, int]:
+    match kind:
+        case None:
+            return -(1 << (bits - 1)), (1 << bits) - 1
+        case ValueType.I16 | ValueType.I32:
+            return -(1 << (bits - 1)), (1 << (bits - 1)) - 1
+        case ValueType.BCD:
+            return 0, 10 ** (bits // 4) - 1
+        case _:
+            return 0, (1 << bits) - 1
+
+
+def _float_bits(text: str) -> int:
+    if not _REAL.fullmatch(text):
+        raise UsageError(f"value {text!r}: expected a number such as 1.5 or -3e-2")
+    try:
+        return int.from_bytes(struct.pack(">f", float(text)), "big")
+    except OverflowError:
+        raise UsageError(f"value {text}: too large for f32") from None

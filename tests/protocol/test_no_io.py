@@ -1,0 +1,45 @@
+"""The protocol is bytes to values and back: it never touches a file, a socket, a clock or a thread."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import pytest
+
+import fatektool.protocol
+
+FOLDER = Path(fatektool.protocol.__file__).parent
+ALLOWED = {
+    "__future__",
+    "binascii",
+    "collections",
+    "dataclasses",
+    "enum",
+    "functools",
+    "itertools",
+    "math",
+    "re",
+    "struct",
+    "typing",
+}
+BUILTINS = {"open", "print", "input", "breakpoint", "__import__", "exec", "eval"}
+ROOMS = ("fatektool.errors", "fatektool.protocol")
+
+
+@pytest.mark.parametrize("path", sorted(FOLDER.rglob("*.py")), ids=lambda path: path.name)
+def test_no_io(path: Path) -> None:
+    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        match node:
+            case ast.Import(names):
+                imported = [alias.name for alias in names]
+            case ast.ImportFrom(module, _, level):
+                assert not level, f"line {node.lineno}"
+                imported = [module or ""]
+            case ast.Call(ast.Name(function)):
+                assert function not in BUILTINS, f"line {node.lineno}"
+                continue
+            case _:
+                continue
+        for name in imported:
+            assert name.startswith(ROOMS) or name.split(".")[0] in ALLOWED, f"line {node.lineno}"
