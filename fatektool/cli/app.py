@@ -30,6 +30,13 @@ JOBS: Final[dict[str, dict[str, Entry]]] = {
         "run": Entry("mode", "Let the PLC RUN."),
         "stop": Entry("mode", "STOP the PLC."),
     },
+    "Registers": {
+        "read": Entry("read", "Read elements of any kind."),
+        "write": Entry("write", "Write elements of any kind, and read them back."),
+        "snapshot": Entry("snapshot", "Data to JSON and others; compare, put back."),
+        "watch": Entry("watch", "Show values live, or as NDJSON."),
+        "discrete": Entry("discrete", "Enable, disable, set, reset and list discretes."),
+    },
     "The line": {
         "ports": Entry("ports", "List the serial ports of this computer."),
         "decode": Entry("decode", "Explain frames, given as hex or from a trace."),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import wraps
+from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -16,6 +17,18 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fatektool.client import Plc
+
+
+class Seconds(click.FloatRange):
+    """A time in seconds; click's range lets NaN through, which would be a wait for ever."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Read the number; NaN is out of every range."""
+        seconds = super().convert(value, param, ctx)
+        if isnan(seconds):
+            self.fail(f"{value!r} is no number of seconds", param, ctx)
+        return seconds
+
 
 F = TypeVar("F", bound="Callable[..., Any]")
 
@@ -70,6 +83,14 @@ def voice_options(function: F) -> F:
 
 def connection_options(function: F) -> F:
     """All that says where a PLC is; the command gets ``connection`` and ``voice``."""
+    line_format = click.option(
+        "--format", "line_format", default="7E1", show_default=True, help="Data bits, parity, stop bits."
+    )
+    return line_format(connection_options_but_format(function))
+
+
+def connection_options_but_format(function: F) -> F:
+    """The same for a command whose ``--format`` says more than the line's; it passes ``line_format`` on."""
 
     @click.option(
         "-p",
@@ -85,11 +106,8 @@ def connection_options(function: F) -> F:
     @click.option("--protocol", type=click.Choice(PROTOCOLS), default="facon", show_default=True)
     @click.option("--baud", type=int, default=9600, show_default=True, help="Speed of the serial line.")
     @click.option(
-        "--format", "line_format", default="7E1", show_default=True, help="Data bits, parity, stop bits."
-    )
-    @click.option(
         "--timeout",
-        type=click.FloatRange(0, 3600, min_open=True),
+        type=Seconds(0, 3600, min_open=True),
         default=0.5,
         show_default=True,
         metavar="S",
@@ -104,7 +122,7 @@ def connection_options(function: F) -> F:
     )
     @click.option(
         "--lock-wait",
-        type=click.FloatRange(0, 86400),
+        type=Seconds(0, 86400),
         default=10.0,
         show_default=True,
         metavar="S",

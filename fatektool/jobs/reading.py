@@ -120,10 +120,11 @@ def read_program_twice(
 def _difference(a: Reading, b: Reading) -> str | None:
     """What two passes differ in, in words."""
     if a.status.system != b.status.system:
-        return (
-            f"the detailed status (53) changed, ladder size {a.program.ladder_words} words, "
-            f"then {b.program.ladder_words}"
+        before, after = a.status.system.document(), b.status.system.document()
+        changed = ", ".join(
+            f"{name} {before[name]}, then {after[name]}" for name in before if before[name] != after[name]
         )
+        return f"the detailed status (53) changed: {changed}"
     found = compare(a.program, b.program)
     return None if found.same else f"page {ranges(found.page_numbers)}"
 

@@ -19,7 +19,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fatektool.errors import DataError, PlcError, PlcNotReady, UsageError
+from fatektool.errors import DataError, LineError, PlcError, PlcNotReady, UsageError
 from fatektool.jobs.backup import backup_of
 from fatektool.jobs.progress import Progress, no_progress
 from fatektool.jobs.reading import Reading, read_program, read_program_twice
@@ -115,7 +115,9 @@ def plan_restore(
         PlcRefused: the PLC does not give its program away.
     """
     if not options.any_header:
-        backup.program.require_header()
+        backup.program.require_header(
+            "restore another backup; or --any-header, if the PLC had this very header when it was backed up"
+        )
     status = plc.detailed_status()
     words = status.system.ladder_words
     if words != backup.program.ladder_words:
@@ -155,7 +157,7 @@ def plan_restore(
 
 
 def _read_present(plc: Plc, options: RestoreOptions, progress: Progress) -> Reading:
-    phase = "reading the old program"
+    phase = "old program"
     if options.single_pass:
         return read_program(plc, phase, progress)
     return read_program_twice(plc, progress, phase=phase)
@@ -175,7 +177,7 @@ def carry_out(
     Raises:
         RestoreIncomplete: the PLC's program is neither old nor new; ``details`` say which pages are.
         PlcError: nothing was written; or all was, and RUN is refused; or it was rolled back.
-        LineError: nothing was written; or it was rolled back.
+        LineError: the same, for want of an answer.
     """
     running = plan.running
     if plan.pages:
@@ -188,9 +190,11 @@ def carry_out(
     if plan.options.run and not running:
         try:
             plc.run()
-        except PlcError as error:
-            raise PlcError(
-                f"the program on file is in the PLC, read back and proven, but {error.message}",
+        except (LineError, PlcError) as error:
+            silent = isinstance(error, LineError)
+            doubt = "whether it runs is not known" if silent else "the PLC does not RUN"
+            raise (LineError if silent else PlcError)(
+                f"the program on file is in the PLC, read back and proven, but {doubt}: {error.message}",
                 hint=error.hint,
                 **error.details,
             ) from error

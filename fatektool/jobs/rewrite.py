@@ -51,7 +51,7 @@ class Rewrite:
 
         Raises:
             RestoreIncomplete: the PLC's program is neither old nor new.
-            PlcError: nothing was written, or it was rolled back.
+            PlcError: nothing was changed, or it was rolled back.
             LineError: it was rolled back.
         """
         self._holds = dict.fromkeys(pages, _OLD)
@@ -60,16 +60,22 @@ class Rewrite:
             self._prove(self._wanted, _NEW)
         except KeyboardInterrupt:
             raise self._incomplete("interrupted") from None
-        except (LineError, PlcError) as error:
-            if isinstance(error, PlcRefused) and not self._pages(_NEW):
+        except Exception as error:
+            # Whatever it is, a trace that cannot be written among it: where the PLC stands must be said.
+            if isinstance(error, PlcError) and self._unchanged():
                 raise self._untouched(error) from error
-            cause = error.message
+            cause = _cause(error)
             if rollback:
                 cause = f"{cause}; and rolling back failed: {self._roll_back(error)}"
             raise self._incomplete(cause) from error
 
     def _pages(self, *states: str) -> list[int]:
         return [number for number, state in sorted(self._holds.items()) if state in states]
+
+    def _unchanged(self) -> bool:
+        """True if the PLC is known to hold its old program to the byte."""
+        before, after = self._present.pages, self._wanted.pages
+        return not self._pages(_UNCERTAIN) and all(before[page] == after[page] for page in self._pages(_NEW))
 
     def _write(self, program: Program, pages: Sequence[int], state: str, phase: str) -> None:
         self._progress(phase, 0, len(pages))
@@ -90,7 +96,6 @@ class Rewrite:
             self._write(program, wrong, state, "writing again")
             wrong = self._read_back(program, wrong, "reading back again")
         if wrong:
-            self._holds |= dict.fromkeys(wrong, _UNCERTAIN)
             raise PlcError(
                 f"the PLC acknowledged page {ranges(wrong)}, but holds something else there",
                 hint="the PLC's program memory may be worn out or protected",
@@ -100,31 +105,40 @@ class Rewrite:
         total = len(pages)
         self._progress(phase, 0, total)
         found = self._plc.read_pages(pages, lambda done: self._progress(phase, done, total))
-        return [number for number, page in zip(pages, found, strict=True) if page != program.pages[number]]
+        wrong = {
+            number: page for number, page in zip(pages, found, strict=True) if page != program.pages[number]
+        }
+        self._holds |= {number: self._whose(number, page) for number, page in wrong.items()}
+        return list(wrong)
 
-    def _roll_back(self, cause: FatektoolError) -> str:
+    def _whose(self, number: int, page: bytes) -> str:
+        if page == self._wanted.pages[number]:
+            return _NEW
+        return _OLD if page == self._present.pages[number] else _UNCERTAIN
+
+    def _roll_back(self, cause: Exception) -> str:
         """Put the old program back and raise the cause; or tell why that failed too."""
         try:
             self._write(self._present, self._pages(_NEW, _UNCERTAIN), _OLD, "rolling back")
             self._prove(self._present, _OLD)
         except KeyboardInterrupt:
             return "interrupted"
-        except (LineError, PlcError) as error:
-            return error.message
+        except Exception as error:  # noqa: BLE001  # it is told, whatever it is
+            return _cause(error)
         kind = LineError if isinstance(cause, LineError) else PlcError
         raise kind(
-            f"{cause.message}; rolled back: the PLC holds its old program again, read back and proven, "
+            f"{_cause(cause)}; rolled back: the PLC holds its old program again, read back and proven, "
             f"and is in STOP",
-            hint=cause.hint,
+            hint=getattr(cause, "hint", None),
             rolled_back=True,
             safety_backup=self._safety_backup,
         ) from cause
 
-    def _untouched(self, error: PlcRefused) -> PlcError:
+    def _untouched(self, error: PlcError) -> PlcError:
         return PlcError(
-            f"{error.message}; nothing was written: the PLC holds its old program and is in STOP",
+            f"{error.message}; nothing was changed: the PLC holds its old program and is in STOP",
             hint=error.hint,
-            code=f"{error.code:X}",
+            **error.details,
         )
 
     def _incomplete(self, cause: str) -> RestoreIncomplete:
@@ -149,3 +163,9 @@ class Rewrite:
             pages_old=self._pages(_OLD),
             safety_backup=self._safety_backup,
         )
+
+
+def _cause(error: Exception) -> str:
+    if isinstance(error, FatektoolError):
+        return error.message
+    return f"a fault of fatektool itself: {type(error).__name__}: {error}"

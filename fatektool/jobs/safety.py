@@ -9,6 +9,7 @@ from whose pages and FILE's all present pages come, and kept as the way back.
 
 from __future__ import annotations
 
+import os
 from itertools import count
 from typing import TYPE_CHECKING, Final
 
@@ -77,4 +78,5 @@ def find_way_back(present: Program, wanted: Program, station: int, file: Path, f
 
 
 def _stem(file: Path) -> str:
-    return file.name.removesuffix(".json")[:150]  # the rest of the name needs room too
+    stem = os.fsencode(file.name.removesuffix(".json"))
+    return stem[:150].decode(errors="ignore")  # 255 bytes is all, and the rest of the name needs room too

@@ -28,12 +28,14 @@ def require_place(path: Path, *, overwrite: bool) -> Path:
     """Check, before any work is done, that a file can be written here; give the path it really has.
 
     Raises:
-        UsageError: it exists and is to be kept, its folder is not there or not writable, it is a folder.
+        UsageError: it exists and is to be kept, its folder is not there or not writable, it is no file.
     """
-    real = Path(os.path.realpath(path))
     try:
+        real = Path(os.path.realpath(path))
         if real.is_dir():
             raise UsageError(f"{path} is a folder, expected a file name", file=str(path))
+        if real.exists() and not real.is_file():
+            raise UsageError(f"{path} is a device or a pipe, expected a file name", file=str(path))
         if real.exists() and not overwrite:
             raise exists_already(path)
         require_folder(real.parent)
@@ -112,7 +114,7 @@ def file_error(what: str, path: Path, error: OSError | ValueError) -> FatektoolE
     reason = getattr(error, "strerror", None) or str(error)
     message = f"cannot {what} {path}: {reason}"
     number = getattr(error, "errno", None)
-    if number in {errno.ENOSPC, errno.EDQUOT}:
+    if number in {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}:
         return DataError(message, hint="make room and run it again; nothing was changed", file=str(path))
     if number == errno.EIO:
         return DataError(message, hint="check the disk", file=str(path))
@@ -150,3 +152,13 @@ def _sync_folder(folder: Path) -> None:
             raise
     finally:
         os.close(descriptor)
+
+
+def free_name(folder: Path, stem: str, suffix: str) -> Path:
+    """A name in a folder that no file has yet: ``stem.suffix``, else ``stem-2.suffix`` and so on."""
+    path = folder / f"{stem}.{suffix}"
+    number = 1
+    while path.exists():
+        number += 1
+        path = folder / f"{stem}-{number}.{suffix}"
+    return path

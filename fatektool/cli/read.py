@@ -1,0 +1,102 @@
+"""``read``: elements of any kind."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fatektool.cli.documents import where
+from fatektool.cli.options import Connection, connection_options
+from fatektool.cli.output import Voice, table
+from fatektool.errors import DataError, PlcError
+from fatektool.jobs.registers import read_elements
+from fatektool.jobs.selection import parse_items
+from fatektool.protocol.values import Value, decode
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from fatektool.jobs.registers import Reading
+    from fatektool.jobs.selection import Item
+
+SELECTION = (
+    "ELEMENTS are R12, a range R0-R99, a count R0:100, each with a type if need be: R12:i16, D4:f32, "
+    "R0:8:bcd. "
+    "Types: bool, u16, i16, u32, i32, f32, bcd, hex."
+)
+
+
+@click.command(
+    "read", epilog="Example: fatektool read R12:3 WM8 DR2 Y0-Y7 X16 D4:f32 -p /dev/ttyUSB0", help=(
+        f"Read elements of any kind, in the fewest bytes.\n\n{SELECTION}"
+    ),
+)  # fmt: skip
+@click.argument("elements", nargs=-1, required=True)
+@connection_options
+def read_command(elements: tuple[str, ...], connection: Connection, voice: Voice) -> int:
+    """Read elements of any kind."""
+    items = parse_items(elements)
+    with connection.open(voice) as plc:
+        reading = read_elements(plc, [item.element for item in items])
+        values, errors = typed(items, reading)
+        document = {
+            "schema": "fatektool.read/1",
+            **where(plc),
+            "requests": reading.requests,
+            "values": values,
+            "elements": raw_values(items, reading),
+            "errors": errors,
+        }
+    voice.show(document, table((key, shown(values[key], errors.get(key))) for key in values))
+    for key, error in errors.items():
+        voice.warn(f"{key}: {error}")
+    return PlcError.exit_code if errors else 0
+
+
+def typed(items: list[Item], reading: Reading) -> tuple[dict[str, Value | None], dict[str, str]]:
+    """Values by key, null where there is none, and why there is none."""
+    values: dict[str, Value | None] = {}
+    errors: dict[str, str] = {}
+    for item in items:
+        values[item.key] = None
+        if item.element in reading.errors:
+            errors[item.key] = reading.errors[item.element]
+            continue
+        try:
+            values[item.key] = decode(reading.values[item.element], item.type, item.element.kind.bits)
+        except DataError as error:
+            errors[item.key] = error.message
+    return values, errors
+
+
+def raw_values(items: list[Item], reading: Reading) -> dict[str, dict[str, Any]]:
+    """Element, type and raw bits by key."""
+    return {
+        item.key: {
+            "element": str(item.element),
+            "type": item.type.value,
+            "raw": raw_text(reading.values, item),
+        }
+        for item in items
+    }
+
+
+def raw_text(values: Mapping[Any, int], item: Item) -> str | None:
+    """Raw bits in hex, a digit for a discrete; None if it was not read."""
+    raw = values.get(item.element)
+    return None if raw is None else f"{raw:0{max(1, item.element.kind.bits // 4)}X}"
+
+
+def shown(value: Value | None, error: str | None) -> str:
+    """A value for people."""
+    if value is None:
+        return f"- ({error})" if error else "-"
+    if isinstance(value, bool):
+        return "on" if value else "off"
+    return f"{value:.7g}" if isinstance(value, float) else f"{value}"
+
+
+def lines_of(values: dict[str, Value | None]) -> Iterator[str]:
+    """A line a value."""
+    yield from table((key, shown(value, None)) for key, value in values.items())

@@ -1,0 +1,198 @@
+"""``snapshot``: a PLC's data to JSON and others; ``snapshot diff``, ``snapshot apply``."""
+
+from __future__ import annotations
+
+from functools import wraps
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from fatektool.cli.options import PATH, Connection, connection_options_but_format, voice_options
+from fatektool.cli.read import SELECTION, shown
+from fatektool.cli.snapshot_apply import apply_command
+from fatektool.errors import PlcError, UsageError
+from fatektool.jobs.selection import parse_items
+from fatektool.jobs.snapshot import Snapshot, load_snapshot, take_snapshot
+from fatektool.jobs.snapshot_compare import Change, compare_snapshots
+from fatektool.jobs.snapshot_formats import FORMATS, SUFFIXES, as_json, as_ndjson
+from fatektool.jobs.snapshot_spec import MAX_SPEC, SpecItem, everything, items_of, limits, parse_spec
+from fatektool.jobs.snapshot_store import Keep, append_line, save_dated
+from fatektool.program.files import read_bounded, require_folder, require_place, write_whole
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from fatektool.cli.output import Voice
+    from fatektool.client import Plc
+
+F = TypeVar("F", bound="Callable[..., Any]")
+
+
+def either_format(function: F) -> F:
+    """``--format`` names the snapshot's form or the line's; both may be given, in any order."""
+
+    @wraps(function)
+    def with_formats(*args: Any, formats: tuple[str, ...], **rest: Any) -> Any:
+        forms = [text for text in formats if text.lower() in FORMATS]
+        lines = [text for text in formats if text.lower() not in FORMATS]
+        if len(forms) > 1 or len(lines) > 1:
+            raise UsageError(
+                f"--format {' '.join(formats)}: expected one of {', '.join(FORMATS)}, "
+                f"and for the line one such as 7E1"
+            )
+        form = forms[0].lower() if forms else "json"
+        return function(*args, form=form, line_format=lines[0] if lines else "7E1", **rest)
+
+    return with_formats  # type: ignore[return-value]  # click's decorators hand back what they get
+
+
+class SnapshotGroup(click.Group):
+    """``snapshot ELEMENTS`` takes one; ``snapshot diff`` and ``snapshot apply`` are commands."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Put the command's name in front of elements and options."""
+        if not args or (args[0] not in self.commands and args[0] not in {"--help", "-h"}):
+            args = ["take", *args]
+        return super().parse_args(ctx, args)
+
+
+@click.group(
+    "snapshot",
+    cls=SnapshotGroup,
+    epilog="Example: fatektool snapshot R0-R99 D4:f32 -p sim: -o snapshots/ --keep 30d",
+)
+def snapshot_command() -> None:
+    """Read a PLC's data to JSON, compare snapshots, put one back.
+
+    'fatektool snapshot ELEMENTS…' is 'snapshot take ELEMENTS…'.
+    """
+
+
+@snapshot_command.command(
+    "take",
+    epilog="Example: fatektool snapshot --spec press.toml -p /dev/ttyUSB0 --append press.ndjson --keep 90d",
+    help=f"Read data from the PLC, in the fewest bytes.\n\n{SELECTION}",
+)
+@click.argument("elements", nargs=-1)
+@click.option("--spec", type=PATH, metavar="FILE.toml", help="What to read, with names, scales and units.")
+@click.option("--group", "groups", multiple=True, help="Only items of this group of --spec; repeat for more.")
+@click.option("--all", "whole", is_flag=True, help="All that the PLC says it has.")
+@click.option(
+    "-o",
+    "--output",
+    type=str,
+    metavar="FILE|DIR/",
+    help="Into FILE, or into a dated file in DIR; else stdout.",
+)
+@click.option("--append", type=PATH, metavar="FILE.ndjson", help="As one line at the end of FILE.")
+@click.option(
+    "--format",
+    "formats",
+    multiple=True,
+    metavar="json|ndjson|csv|influx|prometheus",
+    help="How the snapshot is written (json). A line's format, such as 8N1, may stand here too.",
+)
+@click.option(
+    "--keep", metavar="N|DAYSd", help="Keep N snapshots, or those of so many days, in DIR or FILE.ndjson."
+)
+@either_format
+@connection_options_but_format
+def take_command(
+    elements: tuple[str, ...],
+    connection: Connection,
+    voice: Voice,
+    *,
+    spec: Path | None,
+    groups: tuple[str, ...],
+    whole: bool,
+    output: str | None,
+    append: Path | None,
+    form: str,
+    keep: str | None,
+) -> int:
+    """Read data from the PLC."""
+    items = selected(elements, spec, groups, whole=whole)
+    kept = None if keep is None else Keep.parse(keep)
+    folder = _folder(output)
+    if kept is not None and folder is None and append is None:
+        raise UsageError("--keep goes with -o DIR/ or --append FILE")
+    for place in (append, None if output is None or folder is not None else Path(output)):
+        if place is not None:
+            require_place(place, overwrite=True)
+    with connection.open(voice) as plc:
+        snapshot = _take(plc, items, whole=whole)
+    text = FORMATS[form](snapshot)
+    if folder is not None:
+        voice.detail(f"saved {save_dated(snapshot, text, folder, suffix=SUFFIXES[form], keep=kept)}")
+    elif output is not None:
+        write_whole(Path(output), text.encode(), overwrite=True)
+    if append is not None:
+        append_line(append, as_ndjson(snapshot), kept)
+    if voice.json:
+        click.echo(as_json(snapshot), nl=False)
+    elif output is None and append is None:
+        click.echo(text, nl=False)
+    for key, error in snapshot.errors.items():
+        voice.warn(f"{key}: {error}")
+    return PlcError.exit_code if snapshot.errors else 0
+
+
+def selected(
+    elements: tuple[str, ...], spec: Path | None, groups: tuple[str, ...], *, whole: bool
+) -> list[SpecItem]:
+    """The items that the options name; for ``--all`` none yet, as the PLC must be asked."""
+    if sum((bool(elements), spec is not None, whole)) != 1:
+        raise UsageError("expected one of: ELEMENTS, --spec FILE.toml, --all")
+    if groups and spec is None:
+        raise UsageError("--group goes with --spec")
+    if spec is not None:
+        return parse_spec(read_bounded(spec, MAX_SPEC), str(spec), groups)
+    return items_of(parse_items(elements))
+
+
+def _take(plc: Plc, items: list[SpecItem], *, whole: bool) -> Snapshot:
+    if not whole:
+        return take_snapshot(plc, items)
+    system = plc.detailed_status().system
+    return take_snapshot(plc, everything(system), limits=limits(system))
+
+
+def _folder(output: str | None) -> Path | None:
+    if output is None or not (output.endswith(("/", "\\")) or Path(output).is_dir()):
+        return None
+    return require_folder(Path(output))
+
+
+@snapshot_command.command(
+    "diff", epilog="Example: fatektool snapshot diff monday.json tuesday.json --ignore 'RT*'"
+)
+@click.argument("a", type=PATH)
+@click.argument("b", type=PATH)
+@click.option("--ignore", multiple=True, metavar="GLOB", help="Keys that do not count; repeat for more.")
+@click.option("--tolerance", type=click.FloatRange(0), default=0.0, help="How far apart two numbers may be.")
+@voice_options
+def diff_command(a: Path, b: Path, voice: Voice, *, ignore: tuple[str, ...], tolerance: float) -> int:
+    """Compare the snapshots A and B: exit 0 if nothing differs, 1 if something does. Needs no PLC."""
+    one, other = load_snapshot(a), load_snapshot(b)
+    changes = compare_snapshots(one, other, ignore=ignore, tolerance=tolerance)
+    document = {
+        "schema": "fatektool.snapshot-diff/1",
+        "a": {"file": str(a), "time": one.time},
+        "b": {"file": str(b), "time": other.time},
+        "same": not changes,
+        "changes": [{"key": change.key, "a": change.a, "b": change.b} for change in changes],
+    }
+    voice.show(document, _change_lines(changes))
+    return 1 if changes else 0
+
+
+def _change_lines(changes: list[Change]) -> Iterator[str]:
+    if not changes:
+        yield "same"
+    width = max((len(change.key) for change in changes), default=0)
+    for change in changes:
+        yield f"{change.key:<{width}}  {shown(change.a, None)} -> {shown(change.b, None)}"
+
+
+snapshot_command.add_command(apply_command)

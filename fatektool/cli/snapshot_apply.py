@@ -1,0 +1,157 @@
+"""``snapshot apply``: a snapshot's data back into the PLC."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fatektool.cli.documents import where
+from fatektool.cli.options import PATH, Connection, connection_options, yes_option
+from fatektool.cli.output import Voice, can_ask
+from fatektool.cli.read import shown
+from fatektool.errors import PlcError, UsageError
+from fatektool.jobs.snapshot import load_snapshot
+from fatektool.jobs.snapshot_apply import ApplyPlan, apply_plan, plan_apply
+from fatektool.jobs.snapshot_formats import as_json
+from fatektool.jobs.times import stamp
+from fatektool.program.files import free_name, require_folder, write_whole
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from fatektool.client import Plc
+    from fatektool.jobs.registers import NotTaken
+    from fatektool.jobs.snapshot import Snapshot
+
+
+@click.command("apply", epilog="Example: fatektool snapshot apply press.json -p /dev/ttyUSB0 --only 'R*'")
+@click.argument("file", type=PATH)
+@click.option("--only", multiple=True, metavar="GLOB", help="Only these keys; repeat for more.")
+@click.option("--dry-run", is_flag=True, help="Show what would be written, and write nothing.")
+@click.option(
+    "--safety-dir",
+    type=PATH,
+    metavar="DIR",
+    help="Where the present values are saved; by default beside FILE.",
+)
+@click.option("--no-safety-snapshot", is_flag=True, help="Do not save the present values: no way back.")
+@yes_option
+@connection_options
+def apply_command(
+    file: Path,
+    connection: Connection,
+    voice: Voice,
+    *,
+    only: tuple[str, ...],
+    dry_run: bool,
+    safety_dir: Path | None,
+    no_safety_snapshot: bool,
+    yes: bool,
+) -> int:
+    """Put the data in FILE back into the PLC.
+
+    Only what differs is written; the present values are saved as a safety snapshot first, and all is read
+    back. Inputs (X) are not written. What the PLC does not take is named (exit 4).
+    """
+    if no_safety_snapshot and safety_dir is not None:
+        raise UsageError("--no-safety-snapshot does not go with --safety-dir")
+    snapshot = load_snapshot(file)
+    folder = None if no_safety_snapshot else require_folder(safety_dir or file.parent)
+    safety: str | None = None
+    failed: list[NotTaken] = []
+    with connection.open(voice) as plc:
+        plan = plan_apply(plc, snapshot, only)
+        _warn(plan, voice)
+        lines = list(_plan_lines(plan, snapshot))
+        if plan.changes and not dry_run:
+            if not yes and not can_ask():
+                raise UsageError(
+                    "this needs a confirmation, and there is no terminal to ask on: nothing was written",
+                    hint="add --yes",
+                )
+            safety = None if folder is None else str(_save_safety(plan.present, file, folder))
+            for line in lines:
+                voice.say(line)
+            voice.say(
+                f"The values before are saved in {safety}" if safety else "The values before are NOT saved."
+            )
+            if not voice.confirm(f"Write {len(plan.changes)} values into the PLC?", yes=yes):
+                raise UsageError("not agreed to: nothing was written")
+            failed = apply_plan(plc, plan, safety)
+        document = _document(plc, file, plan, snapshot, failed, safety=safety, dry_run=dry_run)
+    voice.show(document, _result_lines(plan, lines, failed, dry_run=dry_run))
+    for each in failed:
+        got = "nothing" if each.got is None else f"{each.got:X}"
+        voice.warn(f"{each.element} did not take: expected {each.wanted:X}, got {got}: {each.reason}")
+    return PlcError.exit_code if failed else 0
+
+
+def _warn(plan: ApplyPlan, voice: Voice) -> None:
+    if plan.present.running and plan.changes:
+        voice.warn("the PLC is in RUN: its program may change the values again")
+    for keys, why in (
+        (plan.inputs, "inputs follow their terminals"),
+        (plan.missing, "no value in the snapshot"),
+    ):
+        if keys:
+            more = f" and {len(keys) - 5} more" if len(keys) > 5 else ""
+            voice.warn(f"not written: {', '.join(keys[:5])}{more}: {why}")
+
+
+def _save_safety(present: Snapshot, file: Path, folder: Path) -> Path:
+    stem = f"{file.stem[:150]}.safety-st{present.station:02}-{stamp(present.time)}"
+    path = free_name(folder, stem, "json")
+    write_whole(path, as_json(present).encode(), overwrite=False)
+    return path
+
+
+def _plan_lines(plan: ApplyPlan, snapshot: Snapshot) -> Iterator[str]:
+    width = max((len(key) for key, *_ in plan.changes), default=0)
+    for key, *_ in plan.changes:
+        before, after = plan.present.values[key], snapshot.values[key]
+        yield f"{key:<{width}}  {shown(before, None)} -> {shown(after, None)}"
+
+
+def _result_lines(
+    plan: ApplyPlan, lines: list[str], failed: list[NotTaken], *, dry_run: bool
+) -> Iterator[str]:
+    if not plan.changes:
+        yield "same: nothing was written"
+    elif dry_run:
+        yield from lines
+        yield "dry run: nothing was written"
+    else:
+        yield f"{len(plan.writes) - len(failed)} of {len(plan.writes)} values written and read back"
+
+
+def _document(
+    plc: Plc,
+    file: Path,
+    plan: ApplyPlan,
+    snapshot: Snapshot,
+    failed: list[NotTaken],
+    *,
+    safety: str | None,
+    dry_run: bool,
+) -> dict[str, Any]:
+    return {
+        "schema": "fatektool.apply/1",
+        **where(plc),
+        "file": str(file),
+        "dry_run": dry_run,
+        "changes": [
+            {
+                "key": key,
+                "element": str(element),
+                "from": plan.present.values[key],
+                "to": snapshot.values[key],
+            }
+            for key, element, *_ in plan.changes
+        ],
+        "written": 0 if dry_run else len(plan.writes) - len(failed),
+        "not_taken": [{"element": str(each.element), "reason": each.reason} for each in failed],
+        "not_written": [*plan.inputs, *plan.missing],
+        "safety_snapshot": safety,
+    }

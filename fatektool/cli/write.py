@@ -1,0 +1,68 @@
+"""``write``: elements of any kind."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from fatektool.cli.documents import where
+from fatektool.cli.options import Connection, connection_options
+from fatektool.cli.read import shown
+from fatektool.errors import DataError, PlcError
+from fatektool.jobs.assignment import parse_assignments
+from fatektool.jobs.registers import write_elements
+from fatektool.protocol.values import Value, decode
+
+if TYPE_CHECKING:
+    from fatektool.cli.output import Voice
+    from fatektool.jobs.selection import Item
+
+
+@click.command(
+    "write", epilog="Example: fatektool write R12=4261 WM8=0x5555 DR2=-1 D4:f32=1.5 Y0=on -p /dev/ttyUSB0"
+)
+@click.argument("assignments", nargs=-1, required=True, metavar="ELEMENT=VALUE…")
+@connection_options
+def write_command(assignments: tuple[str, ...], connection: Connection, voice: Voice) -> int:
+    """Write elements of any kind, in the fewest bytes, and read them back.
+
+    What did not take is said (exit 4): a disabled discrete, a read-only register, one that the program writes
+    too. A range takes one value for all of it, or one each: R0:3=1,2,3.
+    """
+    pairs = parse_assignments(assignments)
+    by_element = {item.element: item for item, _ in pairs}
+    with connection.open(voice) as plc:
+        failed = write_elements(plc, [(item.element, raw) for item, raw in pairs])
+        not_taken = [
+            {
+                "element": by_element[each.element].key,
+                "wanted": _value(by_element[each.element], each.wanted),
+                "got": _value(by_element[each.element], each.got),
+                "reason": each.reason,
+            }
+            for each in failed
+        ]
+        document = {
+            "schema": "fatektool.write/1",
+            **where(plc),
+            "written": len(pairs) - len(failed),
+            "not_taken": not_taken,
+        }
+    taken = len(pairs) - len(failed)
+    lines = [f"{taken} of {len(pairs)} elements written and read back"]
+    voice.show(document, lines)
+    for each, entry in zip(failed, not_taken, strict=True):
+        item = by_element[each.element]
+        wanted, got = (shown(_value(item, raw), None) for raw in (each.wanted, each.got))
+        voice.warn(f"{entry['element']} did not take: expected {wanted}, got {got}: {each.reason}")
+    return PlcError.exit_code if failed else 0
+
+
+def _value(item: Item, raw: int | None) -> Value | None:
+    if raw is None:
+        return None
+    try:
+        return decode(raw, item.type, item.element.kind.bits)
+    except DataError:
+        return f"{raw:X}"

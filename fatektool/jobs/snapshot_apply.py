@@ -1,0 +1,140 @@
+"""Putting a snapshot's data back: after a battery died, or into a spare PLC.
+
+The order is that of a restore: read what is there, save it as a safety snapshot, ask, write only what
+differs, read back. Inputs (X) follow their terminals and are not written.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from typing import TYPE_CHECKING
+
+from fatektool.errors import DataError, LineError, RestoreIncomplete
+from fatektool.jobs.registers import NotTaken, write_elements
+from fatektool.jobs.selection import Item
+from fatektool.jobs.snapshot import Snapshot, raw_of, take_snapshot
+from fatektool.jobs.snapshot_spec import SpecItem
+from fatektool.planner.atoms import atoms_of
+from fatektool.protocol.values import ValueType
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from fatektool.client import Plc
+    from fatektool.protocol.elements import Element
+
+
+@dataclass(frozen=True, slots=True)
+class ApplyPlan:
+    """What will be written.
+
+    Attributes:
+        present: the same items as they are now.
+        changes: key, element, raw bits now (None if the PLC refuses it) and raw bits on file.
+        inputs: keys of inputs that differ; they are not written.
+        missing: keys that the snapshot has no value for; they are not written.
+    """
+
+    present: Snapshot
+    changes: tuple[tuple[str, Element, int | None, int], ...]
+    inputs: tuple[str, ...]
+    missing: tuple[str, ...]
+
+    @property
+    def writes(self) -> list[tuple[Element, int]]:
+        """What is written, each discrete and register once."""
+        claimed: dict[tuple[str, int], int] = {}
+        found = []
+        for _, element, _, wanted in self.changes:
+            atoms = atoms_of(element)
+            if any(atom not in claimed for atom in atoms):
+                claimed |= dict.fromkeys(atoms, 1)
+                found.append((element, wanted))
+        return found
+
+
+def plan_apply(plc: Plc, snapshot: Snapshot, only: Iterable[str] = ()) -> ApplyPlan:
+    """Read what is there now and find what differs. Changes nothing.
+
+    Args:
+        plc: the PLC.
+        snapshot: what should be there.
+        only: globs of keys; all if empty.
+
+    Raises:
+        DataError: nothing in it matches, or it says two things of one register.
+        LineError: no answer.
+    """
+    globs = list(only)
+    wanted = {
+        key: found
+        for key, found in raw_of(snapshot).items()
+        if not globs or any(fnmatchcase(key, glob) for glob in globs)
+    }
+    if not wanted:
+        raise DataError(f"no key of the snapshot matches {' or '.join(globs) or 'anything'}")
+    _one_value_each(wanted)
+    items = [
+        SpecItem(Item(key, element, ValueType(snapshot.elements[key]["type"])), *_scale(snapshot, key))
+        for key, (element, _) in wanted.items()
+    ]
+    present = take_snapshot(plc, items)
+    now = raw_of(present)
+    changes, inputs, missing = [], [], []
+    for key, (element, raw) in wanted.items():
+        if raw is None:
+            missing.append(key)
+        elif now[key][1] != raw:
+            if element.symbol.endswith("X"):
+                inputs.append(key)
+            else:
+                changes.append((key, element, now[key][1], raw))
+    return ApplyPlan(present, tuple(changes), tuple(inputs), tuple(missing))
+
+
+def _scale(snapshot: Snapshot, key: str) -> tuple[float | None, float | None, str | None]:
+    part = snapshot.elements[key]
+    return part.get("scale"), part.get("offset"), part.get("unit")
+
+
+def _one_value_each(wanted: dict[str, tuple[Element, int | None]]) -> None:
+    """Refuse a snapshot that says two things of one register."""
+    said: dict[tuple[str, int], tuple[int, str]] = {}
+    for key, (element, raw) in wanted.items():
+        if raw is None:
+            continue
+        atoms = atoms_of(element)
+        width = element.kind.bits // len(atoms)
+        for place, atom in enumerate(atoms):
+            bits = raw >> (place * width) & ((1 << width) - 1)
+            before = said.setdefault(atom, (bits, key))
+            if before[0] != bits:
+                raise DataError(
+                    f"the snapshot says two things of {atom[0]}{atom[1]}: {before[1]} and {key}",
+                    hint="pick one with --only",
+                )
+
+
+def apply_plan(plc: Plc, plan: ApplyPlan, safety: str | None) -> list[NotTaken]:
+    """Write what differs and read it back; give what did not take.
+
+    Args:
+        plc: the PLC.
+        plan: of this PLC, just now.
+        safety: where the present values lie, for messages.
+
+    Raises:
+        RestoreIncomplete: the line failed on the way.
+    """
+    try:
+        return write_elements(plc, plan.writes)
+    except (LineError, KeyboardInterrupt) as error:
+        cause = error.message if isinstance(error, LineError) else "interrupted"
+        count = len(plan.changes)
+        raise RestoreIncomplete(
+            f"the snapshot was not applied whole ({cause}): some of {count} values may be written",
+            hint=f"run it again: it writes what is left; the values before lie in {safety or 'no file'}",
+            safety_snapshot=safety,
+            cause=cause,
+        ) from error

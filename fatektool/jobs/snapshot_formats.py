@@ -1,0 +1,136 @@
+"""A snapshot as text: JSON, NDJSON, CSV, InfluxDB line protocol, Prometheus exposition format."""
+
+from __future__ import annotations
+
+import calendar
+import csv
+import io
+import json
+import re
+import time
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fatektool.jobs.snapshot import Snapshot
+    from fatektool.protocol.values import Value
+
+_COLUMNS: Final = ("time", "target", "station", "key", "element", "type", "raw", "value", "unit", "error")
+
+
+def as_json(snapshot: Snapshot) -> str:
+    """One document, indented."""
+    return json.dumps(snapshot.document(), indent=1, allow_nan=False) + "\n"
+
+
+def as_ndjson(snapshot: Snapshot) -> str:
+    """One document on one line."""
+    return json.dumps(snapshot.document(), allow_nan=False, separators=(",", ":")) + "\n"
+
+
+def as_csv(snapshot: Snapshot) -> str:
+    """A header and a row an item."""
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow(_COLUMNS)
+    for key, part in snapshot.elements.items():
+        rows.writerow(
+            (
+                snapshot.time,
+                snapshot.target,
+                snapshot.station,
+                key,
+                part["element"],
+                part["type"],
+                part["raw"] or "",
+                _plain(snapshot.values[key]),
+                part.get("unit", ""),
+                snapshot.errors.get(key, ""),
+            )
+        )
+    return text.getvalue()
+
+
+def as_influx(snapshot: Snapshot) -> str:
+    """InfluxDB line protocol: measurement ``fatek``, a line an item, nanoseconds."""
+    stamp = _seconds(snapshot) * 1_000_000_000
+    lines = []
+    for key, value in snapshot.values.items():
+        if value is None:
+            continue
+        tags = {
+            "target": snapshot.target,
+            "station": str(snapshot.station),
+            "key": key,
+            "element": snapshot.elements[key]["element"],
+            "unit": snapshot.elements[key].get("unit"),
+        }
+        named = ",".join(f"{name}={_influx_tag(text)}" for name, text in tags.items() if text)
+        lines.append(f"fatek,{named} value={_influx_value(value)} {stamp}\n")
+    return "".join(lines)
+
+
+def as_prometheus(snapshot: Snapshot) -> str:
+    """Prometheus exposition format: ``fatek_value`` with labels; samples carry no time."""
+    where = f'target="{_label(snapshot.target)}",station="{snapshot.station}"'
+    lines = [
+        *_gauge("running", "1 in RUN, 0 in STOP."),
+        f"fatek_running{{{where}}} {int(snapshot.running)}\n",
+        *_gauge("snapshot_timestamp_seconds", "When the values were read."),
+        f"fatek_snapshot_timestamp_seconds{{{where}}} {_seconds(snapshot)}\n",
+        *_gauge("value", "Value of an element."),
+    ]
+    for key, value in snapshot.values.items():
+        if value is None or isinstance(value, str):
+            continue
+        part = snapshot.elements[key]
+        unit = f',unit="{_label(part["unit"])}"' if "unit" in part else ""
+        number = int(value) if isinstance(value, bool) else value
+        lines.append(
+            f'fatek_value{{{where},key="{_label(key)}",element="{part["element"]}"{unit}}} {number!r}\n'
+        )
+    return "".join(lines)
+
+
+FORMATS: Final[dict[str, Callable[[Snapshot], str]]] = {
+    "json": as_json,
+    "ndjson": as_ndjson,
+    "csv": as_csv,
+    "influx": as_influx,
+    "prometheus": as_prometheus,
+}
+SUFFIXES: Final = {"json": "json", "ndjson": "ndjson", "csv": "csv", "influx": "influx", "prometheus": "prom"}
+
+
+def _gauge(name: str, text: str) -> list[str]:
+    return [f"# HELP fatek_{name} {text}\n", f"# TYPE fatek_{name} gauge\n"]
+
+
+def _seconds(snapshot: Snapshot) -> int:
+    return calendar.timegm(time.strptime(snapshot.time[:19], "%Y-%m-%dT%H:%M:%S"))
+
+
+def _plain(value: Value | None) -> str:
+    if value is None:
+        return ""
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _influx_tag(text: str) -> str:
+    return re.sub(r"([,= \\])", r"\\\1", text.replace("\n", " "))
+
+
+def _influx_value(value: Value) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int):
+        return f"{value}i"
+    if isinstance(value, float):
+        return repr(value)
+    quoted = value.replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{quoted}"'
+
+
+def _label(text: str) -> str:
+    return text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")

@@ -1,0 +1,172 @@
+"""What a snapshot holds: items with names, types, scales, units, from a TOML file or the command line.
+
+::
+
+    interval_s = 60                      # optional, for 'watch'
+
+    [[item]]
+    element = "R12"                      # as on the command line: R12, D4:f32, R0-R9, M0:16
+    name = "pressure"                    # optional; a range gets pressure[0], pressure[1], …
+    type = "i16"                         # optional, instead of after a colon
+    scale = 0.1                          # optional: value = raw * scale + offset
+    offset = -20.0
+    unit = "bar"
+    group = "hydraulics"                 # optional; --group picks
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Final
+
+from fatektool.errors import DataError, UsageError
+from fatektool.jobs.selection import Item, parse_item
+from fatektool.protocol.elements import Element
+from fatektool.protocol.values import ValueType, default_type
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from fatektool.protocol.status import System
+
+_KEYS: Final = {"element", "name", "type", "scale", "offset", "unit", "group"}
+_NUMBERS: Final = {ValueType.U16, ValueType.I16, ValueType.U32, ValueType.I32, ValueType.F32, ValueType.BCD}
+MAX_SPEC: Final = 1 << 20
+
+
+@dataclass(frozen=True, slots=True)
+class SpecItem:
+    """One item of a snapshot.
+
+    Attributes:
+        item: key, element and type.
+        scale: value = raw * scale + offset; None for the bare number.
+        offset: see ``scale``.
+        unit: in words, if there is one.
+        group: the group it belongs to, if any.
+    """
+
+    item: Item
+    scale: float | None = None
+    offset: float | None = None
+    unit: str | None = None
+    group: str | None = None
+
+
+def items_of(selections: Iterable[Item]) -> list[SpecItem]:
+    """Bare items, from the command line."""
+    return [SpecItem(item) for item in selections]
+
+
+def parse_spec(data: bytes, name: str, groups: Iterable[str] = ()) -> list[SpecItem]:
+    """Read a specification.
+
+    Args:
+        data: the file's bytes.
+        name: its name, for messages.
+        groups: only items of these groups; all if empty.
+
+    Raises:
+        DataError: no TOML, a wrong key or value; says which item.
+    """
+    import tomllib
+
+    try:
+        document = tomllib.loads(data.decode())
+    except (ValueError, RecursionError) as error:  # UnicodeDecodeError and TOMLDecodeError among them
+        raise DataError(f"{name}: no TOML: {error}") from error
+    unknown = set(document) - {"item", "interval_s"}
+    entries = document.get("item")
+    if unknown or not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
+        what = f"unknown key {min(unknown)!r}" if unknown else "no [[item]]"
+        raise DataError(f"{name}: {what}: expected [[item]] tables with element = …")
+    wanted = set(groups)
+    found: dict[str, SpecItem] = {}
+    for number, entry in enumerate(entries, 1):
+        for item in _items(entry, f"{name}: item {number}"):
+            if wanted and item.group not in wanted:
+                continue
+            if found.setdefault(item.item.key, item) != item:
+                raise DataError(
+                    f"{name}: item {number}: {item.item.key!r} is there already: give it another name"
+                )
+    if wanted and not found:
+        raise DataError(f"{name}: no item is in group {', '.join(sorted(wanted))}")
+    return list(found.values())
+
+
+def _items(entry: dict[str, Any], where: str) -> list[SpecItem]:
+    unknown = set(entry) - _KEYS
+    if unknown:
+        raise DataError(f"{where}: unknown key {min(unknown)!r}: expected one of {', '.join(sorted(_KEYS))}")
+    text = _text(entry, "element", where)
+    if text is None:
+        raise DataError(f'{where}: expected element = "R12"')
+    kind = _text(entry, "type", where)
+    try:
+        items = parse_item(f"{text}:{kind}" if kind else text)
+    except UsageError as error:
+        raise DataError(f"{where}: {error.message}", hint=error.hint) from error
+    name = _text(entry, "name", where)
+    made = []
+    for place, item in enumerate(items):
+        key = item.key if name is None else name if len(items) == 1 else f"{name}[{place}]"
+        spec = SpecItem(
+            replace(item, key=key),
+            _number(entry, "scale", where),
+            _number(entry, "offset", where),
+            _text(entry, "unit", where),
+            _text(entry, "group", where),
+        )
+        if (spec.scale, spec.offset) != (None, None) and item.type not in _NUMBERS:
+            raise DataError(f"{where}: scale and offset are for numbers, {item.key} is {item.type.value}")
+        if spec.scale == 0:
+            raise DataError(f"{where}: scale: expected a number other than 0")
+        made.append(spec)
+    return made
+
+
+def _text(entry: dict[str, Any], key: str, where: str) -> str | None:
+    value = entry.get(key)
+    if value is None:
+        return None
+    if not isinstance(value, str) or not value or not value.isprintable():
+        raise DataError(f"{where}: {key}: expected a text, got {value!r:.60}")
+    return value
+
+
+def _number(entry: dict[str, Any], key: str, where: str) -> float | None:
+    value = entry.get(key)
+    if value is None:
+        return None
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise DataError(f"{where}: {key}: expected a number, got {value!r:.60}")
+    return float(value)
+
+
+def everything(system: System) -> list[SpecItem]:
+    """All that 53 says the PLC has: discretes, registers, timers and counters.
+
+    L relays have no element on the link.
+    """
+    counts = limits(system)
+    counts |= {"RT": system.timers, "RC": system.counters, "R": system.r_registers, "D": system.d_registers}
+    items = []
+    for symbol, count in counts.items():
+        for address in range(min(count, Element(symbol, 0).kind.last + 1)):
+            element = Element(symbol, address)
+            items.append(SpecItem(Item(str(element), element, default_type(element.kind.bits))))
+    return items
+
+
+def limits(system: System) -> dict[str, int]:
+    """How many discretes of each kind the PLC has."""
+    return {
+        "X": system.discrete_inputs,
+        "Y": system.discrete_outputs,
+        "M": system.m_relays,
+        "S": system.s_relays,
+        "T": system.timers,
+        "C": system.counters,
+    }

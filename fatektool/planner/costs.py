@@ -1,0 +1,69 @@
+"""What the parts of a request cost on the wire, as the codec tells."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from fatektool.protocol.commands import (
+    ReadDiscretes,
+    ReadMixed,
+    ReadRegisters,
+    Request,
+    WriteDiscretes,
+    WriteMixed,
+    WriteRegisters,
+)
+from fatektool.protocol.elements import KINDS, Element
+
+if TYPE_CHECKING:
+    from fatektool.protocol.codec import Codec
+
+
+def turnaround_bytes(turnaround_s: float, byte_time_s: float) -> float:
+    """A PLC's turnaround as so many bytes of line time."""
+    return turnaround_s / byte_time_s
+
+
+class Costs:
+    """Bytes of requests and answers, of reads or of writes.
+
+    Args:
+        codec: the protocol.
+        turnaround: the PLC's turnaround in bytes; every request pays it once.
+        writes: the costs of 45, 47 and 49 instead of 44, 46 and 48.
+    """
+
+    def __init__(self, codec: Codec, turnaround: float, *, writes: bool) -> None:
+        self._codec = codec
+        self._turnaround = turnaround
+        self._writes = writes
+        self.run_value = cache(self._run_value)
+        self.run_base = cache(self._run_base)
+        self.mixed_item = cache(self._mixed_item)
+        self.mixed_base = self._wire(self._mixed("R", 1)) - self._mixed_item("R") + turnaround
+
+    def _wire(self, request: Request[Any]) -> int:
+        return len(self._codec.encode(1, request)) + self._codec.answer_bytes(request)
+
+    def _run(self, symbol: str, count: int) -> Request[Any]:
+        first = Element(symbol, 0)
+        if KINDS[symbol].bits == 1:
+            return WriteDiscretes(first, (False,) * count) if self._writes else ReadDiscretes(first, count)
+        return WriteRegisters(first, (0,) * count) if self._writes else ReadRegisters(first, count)
+
+    def _mixed(self, symbol: str, count: int) -> Request[Any]:
+        element = Element(symbol, 0)
+        return WriteMixed(((element, 0),) * count) if self._writes else ReadMixed((element,) * count)
+
+    def _run_value(self, symbol: str) -> int:
+        """Bytes that one more value adds to a run."""
+        return self._wire(self._run(symbol, 2)) - self._wire(self._run(symbol, 1))
+
+    def _run_base(self, symbol: str) -> float:
+        """Bytes of a run without its values, turnaround included."""
+        return self._wire(self._run(symbol, 1)) - self._run_value(symbol) + self._turnaround
+
+    def _mixed_item(self, symbol: str) -> int:
+        """Bytes that one more item adds to a mixed request."""
+        return self._wire(self._mixed(symbol, 2)) - self._wire(self._mixed(symbol, 1))
