@@ -20,7 +20,7 @@ from fatektool.version import __version__
 
 if TYPE_CHECKING:
     from fatektool.client import Plc
-    from fatektool.connect import connect
+    from fatektool.connection import connect
     from fatektool.errors import FatektoolError
     from fatektool.jobs.backup import backup
     from fatektool.jobs.restore import restore
@@ -40,7 +40,7 @@ _HOMES = {
     "Program": "fatektool.program.image",
     "backup": "fatektool.jobs.backup",
     "compare": "fatektool.program.compare",
-    "connect": "fatektool.connect",
+    "connect": "fatektool.connection",
     "load_backup": "fatektool.program.archive",
     "read_status": "fatektool.jobs.status",
     "restore": "fatektool.jobs.restore",

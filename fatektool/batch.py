@@ -5,9 +5,10 @@ taken as proven only behind a fence:
 
 - Input that nobody asked for has shown up: what was read since the last fence is read again, each behind a
   fence of its own, as the first answer behind a fence is the right one.
-- A fence was put up for another reason (a time-out, noise): a shift, had there been one, would have lasted up
-  to it. So one answer is enough to tell, the last that differs from the one before it; it is read again.
-- At the end comes a fence, with the same test if the line was not clean.
+- Something else went wrong (a time-out, noise, a foreign frame): it may have been the stray answer, come to
+  grief, and a shift would have lasted up to it. So few answers are enough to tell: the one in whose exchange
+  it was, the one before, and the last that differs from the one behind it. These are read again.
+- At the end comes a fence, with the same test if it does not come down cleanly.
 
 On a clean line all this costs one loopback. What it cannot see is an answer that came twice and another one
 lost right behind it, which leaves no trace: a second pass is what finds that.
@@ -58,23 +59,42 @@ class _Batch(Generic[A]):
 
     def ask(self, place: int) -> None:
         link = self._link
-        suspicions, fences = link.suspicions, link.counters.fences
+        suspicions, trouble, fences = link.suspicions, link.counters.trouble, link.counters.fences
         self.answers.append(link.ask(self._requests[place]))
+        fenced = link.counters.fences != fences
+        if link.suspicions == suspicions and (fenced or link.counters.trouble != trouble):
+            self._check_unproven([] if fenced else [place])
         self._unproven.append(place)
         if link.suspicions != suspicions:
             self._ask_unproven_again()
-        elif link.counters.fences != fences:
-            self._unproven.pop()
-            if not self._last_hold():
-                self._ask_unproven_again()
-            self._unproven = [place]
 
     def close(self) -> None:
         link = self._link
-        suspicions = link.suspicions
-        link.closing_fence()
-        if link.suspicions != suspicions or (link.counters.trouble and not self._last_hold()):
+        suspicions, trouble = link.suspicions, link.counters.trouble
+        proven = link.closing_fence()
+        if link.suspicions != suspicions:
             self._ask_unproven_again()
+        elif proven and link.counters.trouble != trouble:
+            self._check_unproven([])
+
+    def _check_unproven(self, doubtful: list[int]) -> None:
+        """Read again what tells of a shift.
+
+        Args:
+            doubtful: the answer in whose exchange the trouble was, unless a fence stood before it.
+        """
+        suspicions = self._link.suspicions
+        places = self._unproven
+        telling = [*doubtful, *places[-1:]]
+        for place, behind in zip(reversed(places[:-1]), reversed(places[1:]), strict=True):
+            if self.answers[place] != self.answers[behind]:
+                telling.append(place)
+                break
+        held = all(self._ask_behind_fence(place) == self.answers[place] for place in telling)
+        if not held or self._link.suspicions != suspicions:
+            self._unproven = places + doubtful
+            self._ask_unproven_again()
+        self._unproven = []
 
     def _ask_unproven_again(self) -> None:
         for place in self._unproven:
@@ -84,13 +104,3 @@ class _Batch(Generic[A]):
     def _ask_behind_fence(self, place: int) -> A:
         self._link.fence()
         return self._link.ask(self._requests[place])
-
-    def _last_hold(self) -> bool:
-        """Read again the last answer and, if it is like those before it, the last that is not."""
-        if not self._unproven:
-            return True
-        last = self._unproven[-1]
-        change = last
-        while change > self._unproven[0] and self.answers[change] == self.answers[change - 1]:
-            change -= 1
-        return all(self._ask_behind_fence(place) == self.answers[place] for place in {last, change})

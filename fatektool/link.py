@@ -37,8 +37,8 @@ from fatektool.errors import (
     UsageError,
 )
 from fatektool.protocol.commands import Command, Loopback, ReadBriefStatus
-from fatektool.protocol.plc_errors import PROGRAM_COMMANDS, PROGRAM_REFUSED
 from fatektool.protocol.read_back import read_back
+from fatektool.silence import no_answer
 from fatektool.transport.base import no_note
 
 if TYPE_CHECKING:
@@ -111,7 +111,7 @@ class Link:
         self.retries = retries
         self.counters = Counters()
         self.suspicions = 0
-        self._byte_time_s = line.byte_time_s
+        self.byte_time_s = line.byte_time_s
         self._decoder = codec.decoder()
         self._nonces = nonces
         self._note = note
@@ -135,16 +135,22 @@ class Link:
         failure: LineError | None = None
         fences = self.counters.fences
         for _ in range(self.retries + 1):
+            self._drop_input()
+            if self._doubt:
+                try:
+                    self.fence()
+                except LineError as error:  # the fence stays up: further tries would be in vain
+                    closed = failure if isinstance(failure, TransportClosed) else error
+                    raise self._silence(request, closed) from error
             try:
-                self._prepare(request)
+                if self._echoes is None and self.codec.echo_may_pass(request):
+                    self._learn_echo()
                 return self._exchange(request)
             except (TransportError, FrameError) as error:
                 failure = error
-            except NoAnswer as error:  # the fence stays up: the line is dead
-                raise self._no_answer(request, failure or error) from error
             if request.writes and self._took(request):
                 return None  # type: ignore[return-value]  # a write's answer is None
-        raise self._no_answer(request, failure, alive=self.counters.fences > fences)
+        raise self._silence(request, failure, alive=self.counters.fences > fences)
 
     def fence(self) -> None:
         """Make sure that no answer to an earlier request can come any more.
@@ -159,9 +165,7 @@ class Link:
             nonce = Loopback(self._nonces())
             try:
                 if self._echoes is None:
-                    self._exchange(ReadBriefStatus())  # learns whether the line echoes
-                if self._echoes is None:  # something else on the line: not learned
-                    continue
+                    self._learn_echo()
                 self._exchange(nonce)
             except (TransportError, FrameError) as error:
                 failure = error
@@ -170,23 +174,26 @@ class Link:
             self._owed = 0
             self.counters.fences += 1
             return
-        raise self._no_answer(nonce, failure)
+        raise self._silence(nonce, failure)
 
-    def closing_fence(self) -> None:
-        """A fence behind the last of many requests.
+    def closing_fence(self) -> bool:
+        """A fence behind the last of many requests; True if it proves their answers.
 
         A PLC that never answered a loopback is let off with a note: with nothing astray before, what is lost
         is the proof, not the answers.
         """
         self._drop_input()
+        doubt = self._doubt
         try:
             self.fence()
         except (NoAnswer, PlcRefused):
-            if Command.LOOPBACK in self._answered:
+            if doubt or Command.LOOPBACK in self._answered:
                 raise
             self._note("this PLC answers no loopback (4E): a late answer to an earlier request could pass")
             self._doubt = False
             self._owed = 0
+            return False
+        return True
 
     def broadcast(self, request: Request[None]) -> None:
         """Send a request to every PLC on the line (station 0). Nobody answers."""
@@ -194,13 +201,13 @@ class Link:
 
     # --- one try ----------------------------------------------------------------------------------
 
-    def _prepare(self, request: Request[A]) -> None:
-        """Drop input, and put up a fence if there is any doubt."""
-        self._drop_input()
-        if self._doubt:
-            self.fence()
-        elif self._echoes is None and self.codec.echo_may_pass(request):
-            self._exchange(ReadBriefStatus())
+    def _learn_echo(self) -> None:
+        """Ask what cannot be mistaken for its own echo, and hear whether the line echoes."""
+        self._exchange(ReadBriefStatus())
+        if self._echoes is None:
+            self._doubt = True
+            self._heard = self._heard or "more than one answer"
+            raise FrameError("something beside the answer: it may have been an echo or not")
 
     def _exchange(self, request: Request[A]) -> A:
         """Send a request once and wait for its answer.
@@ -215,7 +222,7 @@ class Link:
         self.counters.exchanges += 1
         try:
             self.transport.write(raw)
-            deadline = self.transport.clock() + (len(raw) + size) * self._byte_time_s
+            deadline = self.transport.clock() + (len(raw) + size) * self.byte_time_s
             return self._await(request, raw, size, deadline + self.timeout_s * self._patience)
         except TransportTimeout:
             self.counters.timeouts += 1
@@ -226,7 +233,9 @@ class Link:
                     self._silent_tries = 0
                     self.transport.renew()
             raise
-        except (TransportClosed, FrameError):
+        except PlcRefused:
+            raise
+        except BaseException:  # an interrupt too: the answer may still come
             self._lost()
             raise
 
@@ -354,32 +363,23 @@ class Link:
             return took(self.ask(question))
         except PlcRefused:
             return False
+        except LineError as error:
+            raise self._silence(request, error, unknown=True) from error
 
-    def _no_answer(self, request: Request[A], failure: LineError | None, *, alive: bool = False) -> LineError:
+    def _silence(
+        self, request: Request[A], failure: LineError | None, *, alive: bool = False, unknown: bool = False
+    ) -> LineError:
         if isinstance(failure, TransportClosed):
             return failure
-        heard = f"heard {self._heard}" if self._heard else "nothing heard"
-        if alive:
-            heard = f"it answers loopbacks, but not this; {heard}"
-        where = f"{self.transport.name} ({self.transport.line or self.codec.name})"
-        return NoAnswer(
-            f"no answer from station {self.station} on {where} to '{request.command.words}' "
-            f"({request.command:02X}) in {self.retries + 1} tries of {self.timeout_s:g} s: {heard}",
-            hint=self._advice(request, alive=alive),
+        return no_answer(
+            request,
+            self._heard,
             station=self.station,
             target=self.transport.name,
-            heard=self._heard or None,
+            line=self.transport.line or self.codec.name,
+            tries=self.retries + 1,
+            timeout_s=self.timeout_s,
+            alive=alive,
+            served=request.command in self._answered,
+            unknown=unknown,
         )
-
-    def _advice(self, request: Request[A], *, alive: bool) -> str:
-        if alive and request.command in PROGRAM_COMMANDS and request.command not in self._answered:
-            return PROGRAM_REFUSED
-        if "station" in self._heard:
-            return "check --station"
-        if "own request" in self._heard:
-            return "the PLC is silent: is it on, are A and B the right way round, is the station right?"
-        if alive:
-            return "the PLC is slow or the line loses frames: try a longer --timeout, more --retries"
-        if self._heard:
-            return "check --baud, --format and --protocol, and the line's termination and shield"
-        return "is the PLC on and the cable in? Check station, baud and format (factory: station 1, 9600 7E1)"

@@ -5,6 +5,9 @@ One file a command; each is loaded when its command is used.
 
 from __future__ import annotations
 
+import contextlib
+import errno
+import io
 import os
 import signal
 import sys
@@ -12,51 +15,69 @@ from typing import TYPE_CHECKING, NoReturn
 
 import click
 
-from fatektool.errors import FatektoolError, UsageError
+from fatektool.cli.output import print_json, tell
+from fatektool.errors import DataError, FatektoolError, UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from types import FrameType
 
 INTERRUPTED = 130
-FAULT = 70
+_OUTPUT_LOST = {errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EFBIG, errno.EBADF}
 
 
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
     """Run the command line and end the process with its exit code."""
     words = list(sys.argv[1:] if arguments is None else arguments)
+    _mend_streams()
     code = run(words)
     try:
         sys.stdout.flush()
-    except OSError:  # whoever read our output is gone
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    except OSError:
+        _drop_output()
     sys.exit(code)
 
 
 def run(words: list[str]) -> int:  # noqa: PLR0911  # a way out a class of error
     """Run one command line; give its exit code. What goes wrong is one line on stderr."""
-    from fatektool.cli.app import app
-
     signal.signal(signal.SIGTERM, _terminate)
     as_json = "--json" in words
     try:
-        result = app.main(args=words, prog_name="fatektool", standalone_mode=False)
+        return _invoke(words)
     except FatektoolError as error:
         return report(error, as_json=as_json)
-    except click.exceptions.NoArgsIsHelpError as error:
-        click.echo(error.ctx.get_help())
-        return UsageError.exit_code
     except click.ClickException as error:
         return report(_usage(error), as_json=as_json)
     except (click.Abort, KeyboardInterrupt):
+        if sys.stderr.isatty():
+            tell("")  # the terminal shows ^C, and no new line
         return report(Interrupted("interrupted"), as_json=as_json)
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except BrokenPipeError:  # whoever read our output has seen enough
+        _drop_output()
         return UsageError.exit_code
     except Exception as error:  # the last door: no traceback for the user
+        if isinstance(error, OSError) and error.errno in _OUTPUT_LOST and error.filename is None:
+            _drop_output()
+            return report(_output_lost(error), as_json=as_json)
         if os.environ.get("FATEKTOOL_TRACEBACK"):
             raise
         return report(_fault(error), as_json=as_json)
+
+
+def _invoke(words: list[str]) -> int:
+    """Run one command line; click's own ``main`` would end with exit codes of its own."""
+    from fatektool.cli.app import app
+
+    completing = os.environ.get("_FATEKTOOL_COMPLETE")
+    if completing:
+        from click.shell_completion import shell_complete
+
+        return shell_complete(app, {}, "fatektool", "_FATEKTOOL_COMPLETE", completing)
+    try:
+        with app.make_context("fatektool", list(words or ["--help"]), obj=tuple(words)) as context:
+            result = app.invoke(context)
+    except click.exceptions.Exit as end:  # --help, --version
+        return end.exit_code if words else UsageError.exit_code
     return result if isinstance(result, int) else 0
 
 
@@ -70,11 +91,11 @@ def report(error: FatektoolError, *, as_json: bool) -> int:
     """Say what went wrong: one line on stderr, and with ``--json`` a document on stdout."""
     if as_json:
         from fatektool.cli.documents import error_document
-        from fatektool.cli.output import print_json
 
-        print_json(error_document(error))
+        with contextlib.suppress(OSError):
+            print_json(error_document(error))
     line = " ".join(str(error).split())
-    click.echo(f"fatektool: {line}", err=True)
+    tell(f"fatektool: {line}")
     return error.exit_code
 
 
@@ -89,6 +110,33 @@ def _fault(error: Exception) -> FatektoolError:
         f"a fault of fatektool itself: {type(error).__name__}: {error}",
         hint="please report it with the command line; FATEKTOOL_TRACEBACK=1 shows where it happened",
     )
+
+
+def _output_lost(error: OSError) -> FatektoolError:
+    return DataError(
+        f"standard output cannot be written: {error.strerror}",
+        hint="make room or name another place, and run it again",
+    )
+
+
+def _mend_streams() -> None:
+    """Stand in for standard streams that are closed; let no character be one that cannot be printed."""
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: PTH123, SIM115  # stays open
+    out = sys.stdout
+    if isinstance(out, io.TextIOWrapper):
+        raw: object = out.buffer
+        if isinstance(raw, io.FileIO):  # PYTHONUNBUFFERED: half a write would pass for a whole one
+            sys.stdout = out = io.TextIOWrapper(io.BufferedWriter(raw), out.encoding)
+        out.reconfigure(errors="backslashreplace")
+
+
+def _drop_output() -> None:
+    """Let what is still to be written to stdout go nowhere."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, sys.stdout.fileno())
+    os.close(nowhere)
 
 
 def _terminate(_signal: int, _frame: FrameType | None) -> None:

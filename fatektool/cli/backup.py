@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 
@@ -42,8 +43,7 @@ def backup_command(
     Without FILE the name is made of station and time; - is standard output. The PLC may run.
     """
     path = file or Path(f"fatek-st{connection.station:02}-{stamp(utc())}.json")
-    if raw is not None and raw.resolve() == path.resolve():
-        raise UsageError(f"{raw} is named twice: expected another name for --raw")
+    require_raw_name(raw, path)
     for place in (path, raw):
         if place is not None and place != STDOUT:
             require_place(place, overwrite=force)
@@ -71,6 +71,18 @@ def backup_command(
         ("sha256", program.sha256),
     ]
     voice.show(saved_document(found, path, duration_s), table(rows))
+
+
+def require_raw_name(raw: Path | None, file: Path) -> None:
+    """Check that ``--raw`` names a file, and not the one that holds the backup.
+
+    Raises:
+        UsageError: it does not.
+    """
+    if raw == STDOUT:
+        raise UsageError("--raw -: standard output has other uses here, expected a file name")
+    if raw is not None and os.path.realpath(raw) == os.path.realpath(file):
+        raise UsageError(f"{raw} is named twice: expected another name for --raw")
 
 
 def warn_of_header(found: Backup, voice: Voice) -> None:

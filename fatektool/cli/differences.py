@@ -29,7 +29,8 @@ def difference_lines(found: Comparison, same: str, a: str, b: str) -> Iterator[s
     if found.a_ladder_words != found.b_ladder_words:
         yield f"differs: ladder size {found.a_ladder_words} words in {a}, {found.b_ladder_words} in {b}"
     if found.pages:
-        yield f"differs: {found.word_count} words in {len(found.pages)} pages ({a} -> {b})"
+        size = f"{_count(found.word_count, 'word')} in {_count(len(found.pages), 'page')}"
+        yield f"differs: {size} ({a} -> {b})"
     for page in found.pages:
         if not page.words:
             yield f"  page {page.page}: only in one of them"
@@ -38,3 +39,7 @@ def difference_lines(found: Comparison, same: str, a: str, b: str) -> Iterator[s
         more = len(page.words) - _WORDS_SHOWN
         rest = f", {more} more" if more > 0 else ""
         yield f"  page {page.page}, {len(page.words)} of {PAGE_WORDS} words: {shown}{rest}"
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

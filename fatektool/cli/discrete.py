@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fatektool.batch import ask_all
 from fatektool.cli.documents import where
 from fatektool.cli.options import Connection, connection_options
-from fatektool.errors import PlcError, UsageError
-from fatektool.jobs.registers import read_elements
+from fatektool.cli.read import warn_of
+from fatektool.errors import PlcError, PlcRefused, UsageError
+from fatektool.jobs.registers import read_disabled, read_elements
 from fatektool.jobs.selection import parse_items
-from fatektool.protocol.commands import Control, ControlDiscrete, ReadDisabled
+from fatektool.protocol.commands import Control, ControlDiscrete
 
 if TYPE_CHECKING:
     from fatektool.cli.output import Voice
@@ -32,18 +32,20 @@ def _control(name: str, control: Control, text: str) -> None:
     @discrete_command.command(name, help=text, epilog=f"Example: fatektool discrete {name} X16 Y0-Y3 -p sim:")
     @click.argument("elements", nargs=-1, required=True)
     @connection_options
-    def command(elements: tuple[str, ...], connection: Connection, voice: Voice) -> None:
+    def command(elements: tuple[str, ...], connection: Connection, voice: Voice) -> int:
         wanted = _discretes(elements)
         with connection.open(voice) as plc:
+            refused = {}
             for element in wanted:
-                plc.link.ask(ControlDiscrete(control, element))
-            states = _states(plc, wanted)
-            document = {"schema": "fatektool.discrete/1", **where(plc), "discretes": states}
-        voice.show(document, _lines(states))
+                try:
+                    plc.link.ask(ControlDiscrete(control, element))
+                except PlcRefused as error:
+                    refused[str(element)] = error.message
+            return _show(plc, wanted, voice, refused, control)
 
 
 _control("enable", Control.ENABLE, "Give discretes back to the program.")
-_control("disable", Control.DISABLE, "Hold discretes as they are, whatever the program does.")
+_control("disable", Control.DISABLE, "Hold discretes as they are, whatever the program does; 'set' and 'reset' still switch them.")
 _control("set", Control.SET, "Switch discretes on.")
 _control("reset", Control.RESET, "Switch discretes off.")
 
@@ -51,13 +53,11 @@ _control("reset", Control.RESET, "Switch discretes off.")
 @discrete_command.command("list", epilog="Example: fatektool discrete list Y10-Y16 -p sim:")
 @click.argument("elements", nargs=-1, required=True)
 @connection_options
-def list_command(elements: tuple[str, ...], connection: Connection, voice: Voice) -> None:
+def list_command(elements: tuple[str, ...], connection: Connection, voice: Voice) -> int:
     """Show which discretes are on, and which are disabled."""
     wanted = _discretes(elements)
     with connection.open(voice) as plc:
-        states = _states(plc, wanted)
-        document = {"schema": "fatektool.discrete/1", **where(plc), "discretes": states}
-    voice.show(document, _lines(states))
+        return _show(plc, wanted, voice, {})
 
 
 def _discretes(texts: tuple[str, ...]) -> list[Element]:
@@ -68,31 +68,57 @@ def _discretes(texts: tuple[str, ...]) -> list[Element]:
     return elements
 
 
-def _states(plc: Plc, elements: list[Element]) -> dict[str, dict[str, bool]]:
-    """On and disabled, by element; what the PLC refuses ends it."""
+def _show(
+    plc: Plc, elements: list[Element], voice: Voice, refused: dict[str, str], control: Control | None = None
+) -> int:
+    """Read the discretes back, show them, and say what was refused and what did not take.
+
+    Args:
+        plc: the PLC.
+        elements: discretes.
+        voice: says it.
+        refused: by name: what the PLC said to the control.
+        control: what was asked of them; None for nothing.
+    """
     on = read_elements(plc, elements)
-    for element, error in on.errors.items():
-        raise PlcError(f"{element}: {error}", hint="'fatektool status' shows how many this PLC has")
-    requests = [ReadDisabled(first, count) for first, count in _runs(elements)]
-    disabled: dict[Element, bool] = {}
-    for request, answer in zip(requests, ask_all(plc.link, requests), strict=True):
-        disabled |= {request.first.after(place): bit for place, bit in enumerate(answer)}
-    return {
-        str(element): {"on": bool(on.values[element]), "disabled": disabled[element]} for element in elements
+    flags, errors = read_disabled(plc, on.values)
+    unread = {str(element): error for element, error in (on.errors | errors).items()}
+    states = {
+        str(element): {"on": bool(on.values[element]), "disabled": flags[element]}
+        for element in elements
+        if element in flags
     }
+    not_taken = {
+        name: _why(name, state["disabled"], control)
+        for name, state in states.items()
+        if control is not None and name not in refused and not _took(state, control)
+    }
+    unread |= refused
+    document = {
+        "schema": "fatektool.discrete/1",
+        **where(plc),
+        "discretes": states,
+        "not_taken": not_taken,
+        "errors": unread,
+    }
+    voice.show(document, _lines(states))
+    warn_of({name: f"did not take: {why}" for name, why in not_taken.items()}, voice)
+    warn_of(unread, voice)
+    return PlcError.exit_code if unread or not_taken else 0
 
 
-def _runs(elements: list[Element]) -> list[tuple[Element, int]]:
-    """Neighbours together, 256 at most."""
-    runs: list[tuple[Element, int]] = []
-    for element in sorted(set(elements)):
-        if runs:
-            first, count = runs[-1]
-            if count < 256 and (element.symbol, element.address) == (first.symbol, first.address + count):
-                runs[-1] = (first, count + 1)
-                continue
-        runs.append((element, 1))
-    return runs
+def _took(state: dict[str, bool], control: Control) -> bool:
+    if control in {Control.SET, Control.RESET}:
+        return state["on"] == (control is Control.SET)
+    return state["disabled"] == (control is Control.DISABLE)
+
+
+def _why(name: str, disabled: bool, control: Control) -> str:
+    if control not in {Control.SET, Control.RESET} or disabled:
+        return "acknowledged, and nothing changed"
+    if name.startswith("X"):
+        return f"an input follows its terminal; 'fatektool discrete disable {name}' holds it"
+    return f"the program writes it too; 'fatektool discrete disable {name}' holds it"
 
 
 def _lines(states: dict[str, dict[str, bool]]) -> list[str]:

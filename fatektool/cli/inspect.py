@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fatektool.cli.backup import warn_of_header
+from fatektool.cli.backup import require_raw_name, warn_of_header
 from fatektool.cli.documents import inspect_document
 from fatektool.cli.options import PATH, voice_options
 from fatektool.cli.output import Voice, table
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 @voice_options
 def inspect_command(file: Path, voice: Voice, *, raw: Path | None, force: bool) -> None:
     """Show and check what the backup FILE holds. Needs no PLC."""
+    require_raw_name(raw, file)
     found = load_backup(file)
     warn_of_header(found, voice)
     if raw is not None:

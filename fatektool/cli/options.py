@@ -52,7 +52,7 @@ class Connection:
 
     def open(self, voice: Voice) -> Plc:
         """Open the line."""
-        from fatektool.connect import connect
+        from fatektool.connection import connect
 
         return connect(
             self.target,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import sys
 from dataclasses import dataclass
@@ -18,6 +19,12 @@ if TYPE_CHECKING:
     from typing import Self
 
     from rich.progress import TaskID
+
+
+def tell(text: str) -> None:
+    """Print a line on stderr. That nobody hears it any more is no reason to leave a PLC half written."""
+    with contextlib.suppress(OSError):
+        click.echo(text, err=True)
 
 
 def print_json(document: dict[str, Any]) -> None:
@@ -42,16 +49,16 @@ class Voice:
     def say(self, text: str) -> None:
         """Tell the user something, on stderr."""
         if not self.quiet:
-            click.echo(text, err=True)
+            tell(text)
 
     def detail(self, text: str) -> None:
         """Tell a curious user something, on stderr."""
         if self.verbose:
-            click.echo(text, err=True)
+            tell(text)
 
     def warn(self, text: str) -> None:
         """Warn the user, on stderr, quiet or not."""
-        click.echo(f"warning: {text}", err=True)
+        tell(f"warning: {text}")
 
     def show(self, document: dict[str, Any], lines: Iterable[str]) -> None:
         """Print the document or the lines, on stdout."""
@@ -74,7 +81,17 @@ class Voice:
                 "this needs a confirmation, and there is no terminal to ask on: nothing was done",
                 hint=f"add {option}",
             )
-        return click.confirm(question, default=False, err=True)
+        while True:
+            click.echo(f"{question} [y/N]: ", nl=False, err=True)
+            answer = sys.stdin.readline()
+            if not answer:  # ^D, or the terminal is gone
+                tell("")
+            word = answer.strip().lower()
+            if word in {"y", "yes"}:
+                return True
+            if word in {"", "n", "no"}:
+                return False
+            tell("please answer y or n")
 
     def progress(self) -> Bar:
         """A progress bar for a ``with`` statement; nothing where it would be noise."""
@@ -133,8 +150,10 @@ class Bar:
             self._rich.stop()
 
     def go_on(self) -> None:
-        """Put the bar back."""
+        """Put the bar back; what was done before the question stays on the screen above it."""
         if self._shown:
+            for task in self._tasks.values():
+                self._rich.update(task, visible=False)
             self._rich.start()
 
     def _update(self, phase: str, done: int, total: int) -> None:

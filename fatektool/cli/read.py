@@ -15,11 +15,12 @@ from fatektool.jobs.selection import parse_items
 from fatektool.protocol.values import Value, decode
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Mapping
 
     from fatektool.jobs.registers import Reading
     from fatektool.jobs.selection import Item
 
+_MOST_NAMED = 5
 SELECTION = (
     "ELEMENTS are R12, a range R0-R99, a count R0:100, each with a type if need be: R12:i16, D4:f32, "
     "R0:8:bcd. "
@@ -48,10 +49,18 @@ def read_command(elements: tuple[str, ...], connection: Connection, voice: Voice
             "elements": raw_values(items, reading),
             "errors": errors,
         }
-    voice.show(document, table((key, shown(values[key], errors.get(key))) for key in values))
-    for key, error in errors.items():
-        voice.warn(f"{key}: {error}")
+    voice.show(document, table((key, shown(value, None)) for key, value in values.items()))
+    warn_of(errors, voice)
     return PlcError.exit_code if errors else 0
+
+
+def warn_of(errors: dict[str, str], voice: Voice) -> None:
+    """Say what has no value and why: the first few, and how many more."""
+    keys = list(errors)
+    for key in keys[:_MOST_NAMED]:
+        voice.warn(f"{key}: {errors[key]}")
+    if keys[_MOST_NAMED:]:
+        voice.warn(f"{len(keys) - _MOST_NAMED} more have no value, {keys[_MOST_NAMED]} to {keys[-1]}")
 
 
 def typed(items: list[Item], reading: Reading) -> tuple[dict[str, Value | None], dict[str, str]]:
@@ -95,8 +104,3 @@ def shown(value: Value | None, error: str | None) -> str:
     if isinstance(value, bool):
         return "on" if value else "off"
     return f"{value:.7g}" if isinstance(value, float) else f"{value}"
-
-
-def lines_of(values: dict[str, Value | None]) -> Iterator[str]:
-    """A line a value."""
-    yield from table((key, shown(value, None)) for key, value in values.items())

@@ -6,6 +6,7 @@ import shlex
 from typing import TYPE_CHECKING
 
 import click
+from click.core import ParameterSource
 
 from fatektool.cli.backup import warn_of_header
 from fatektool.cli.documents import restore_document
@@ -84,7 +85,7 @@ def restore_command(
             try:
                 result = carry_out(plc, plan, kept, progress=bar.update)
             except RestoreIncomplete as error:
-                command = _go_on(connection, file, stop=stop, run=run)
+                command = _go_on(connection)
                 error.details["command"] = command
                 error.hint = f"mend the cause, then: {command}"
                 raise
@@ -92,7 +93,7 @@ def restore_command(
         document = restore_document(
             plc, file, result, dry_run=dry_run, pages_to_write=len(plan.pages), duration_s=duration_s
         )
-    voice.show(document, _lines(plan, result, file, dry_run=dry_run))
+    voice.show(document, _lines(plan, result, file, dry_run=dry_run, way_back=folder is not None))
 
 
 def _agree(
@@ -102,13 +103,13 @@ def _agree(
     will_run = plan.options.run and not plan.running
     if not plan.pages and not will_run:
         return None
+    bar.pause()  # while it is shown, stderr is rich's, which older versions say is no terminal
     if not yes and not can_ask():
         raise UsageError(
             "a restore needs a confirmation, and there is no terminal to ask on: nothing was written",
             hint="add --yes",
         )
     kept = None
-    bar.pause()
     if plan.pages:
         kept = None if folder is None else str(keep_way_back(plan, file, folder))
         for line in _plan_lines(plan, kept):
@@ -149,11 +150,13 @@ def _nothing_done(plan: RestorePlan) -> RestoreResult:
     )
 
 
-def _lines(plan: RestorePlan, result: RestoreResult, file: Path, *, dry_run: bool) -> Iterator[str]:
+def _lines(
+    plan: RestorePlan, result: RestoreResult, file: Path, *, dry_run: bool, way_back: bool
+) -> Iterator[str]:
     if plan.comparison.same:
         yield f"same: the PLC's program is the one in {file} already; nothing was written"
     elif dry_run:
-        yield from _plan_lines(plan, "a safety backup, before the first page is written")
+        yield from _plan_lines(plan, "a safety backup before the first page is written" if way_back else None)
         yield "dry run: nothing was written"
     else:
         rows = [
@@ -166,10 +169,12 @@ def _lines(plan: RestorePlan, result: RestoreResult, file: Path, *, dry_run: boo
         yield f"the PLC is in {result.mode_after.upper()}"
 
 
-def _go_on(connection: Connection, file: Path, *, stop: bool, run: bool) -> str:
-    """The one command that finishes an unfinished restore."""
-    words = ["fatektool", "restore", str(file), "-p", connection.target, "-s", str(connection.station)]
-    if (connection.baud, connection.format) != (9600, "7E1"):
-        words += ["--baud", str(connection.baud), "--format", connection.format]
-    words += ["--changed-only", *(["--stop"] if stop else []), *(["--run"] if run else [])]
-    return shlex.join(words)
+def _go_on(connection: Connection) -> str:
+    """The one command that finishes an unfinished restore: the same again, for the pages that are left."""
+    context = click.get_current_context()
+    words = [word for word in context.find_root().obj if word != "--changed-only"]
+    at = words.index("restore") + 1
+    if context.get_parameter_source("port") is ParameterSource.ENVIRONMENT:
+        words[at:at] = ["-p", connection.target]
+    words[at:at] = ["--changed-only"]
+    return shlex.join(["fatektool", *words])

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from fatektool.cli.output import Voice
     from fatektool.simulator.build import Simulation
 
-_DOOR = re.compile(r"(?:\[([^\]]+)\]|([^:]*)):(\d+)|(\d+)")
+_DOOR = re.compile(r"(?:\[([^\]]+)\]|([^:]*)):(\d{1,5})|(\d{1,5})", re.ASCII)
 
 
 @click.command(
@@ -154,5 +154,5 @@ def _serve(
 def _host_and_port(text: str) -> tuple[str, int]:
     match = _DOOR.fullmatch(text)
     if match is None or int(match[3] or match[4]) > 65535:
-        raise UsageError(f"door {text!r}: expected HOST:PORT, such as 127.0.0.1:5000")
+        raise UsageError(f"door {text[:60]!r}: expected HOST:PORT, such as 127.0.0.1:5000")
     return match[1] or match[2] or "127.0.0.1", int(match[3] or match[4])

@@ -9,7 +9,7 @@ import click
 from fatektool.cli.documents import where
 from fatektool.cli.options import Connection, connection_options
 from fatektool.cli.read import shown
-from fatektool.errors import DataError, PlcError
+from fatektool.errors import DataError, LineError, PlcError
 from fatektool.jobs.assignment import parse_assignments
 from fatektool.jobs.registers import write_elements
 from fatektool.protocol.values import Value, decode
@@ -33,7 +33,12 @@ def write_command(assignments: tuple[str, ...], connection: Connection, voice: V
     pairs = parse_assignments(assignments)
     by_element = {item.element: item for item, _ in pairs}
     with connection.open(voice) as plc:
-        failed = write_elements(plc, [(item.element, raw) for item, raw in pairs])
+        try:
+            failed = write_elements(plc, [(item.element, raw) for item, raw in pairs])
+        except LineError as error:
+            left = f"some of the {len(pairs)} values may be written: read them, or write them again"
+            error.hint = f"{error.hint}; {left}" if error.hint else left
+            raise
         not_taken = [
             {
                 "element": by_element[each.element].key,
@@ -55,8 +60,12 @@ def write_command(assignments: tuple[str, ...], connection: Connection, voice: V
     for each, entry in zip(failed, not_taken, strict=True):
         item = by_element[each.element]
         wanted, got = (shown(_value(item, raw), None) for raw in (each.wanted, each.got))
-        voice.warn(f"{entry['element']} did not take: expected {wanted}, got {got}: {each.reason}")
+        voice.warn(f"{entry['element']} did not take: expected {wanted}, {_holds(got)}: {each.reason}")
     return PlcError.exit_code if failed else 0
+
+
+def _holds(got: str) -> str:
+    return "it cannot be read" if got == "-" else f"it holds {got}"
 
 
 def _value(item: Item, raw: int | None) -> Value | None:

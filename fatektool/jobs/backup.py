@@ -37,7 +37,9 @@ def backup(
 
     def check(reading: Reading) -> None:
         if not any_header:
-            reading.program.require_header()
+            reading.program.require_header(
+                "run it again; if it stays so, --any-header keeps the image as it is, marked as such"
+            )
 
     if single_pass:
         reading = read_program(plc, progress=progress)

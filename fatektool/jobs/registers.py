@@ -1,11 +1,13 @@
 """Reading and writing elements of any kind, all that is asked in the fewest bytes.
 
 An element that the PLC refuses does not lose the others: a request that is refused is taken apart until the
-refused element stands alone.
+refused element stands alone. Only of many neighbours that end past what the PLC has, not every one is asked:
+see ``_all_refused``.
 """
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
@@ -13,16 +15,30 @@ from fatektool.batch import ask_all
 from fatektool.errors import PlcRefused, UsageError
 from fatektool.jobs.selection import overlapping
 from fatektool.planner import Values, plan_reads, plan_writes, turnaround_bytes
-from fatektool.protocol.commands import ReadDiscretes, ReadRegisters, Request, WriteDiscretes, WriteRegisters
+from fatektool.planner.atoms import Atom, atoms_of
+from fatektool.protocol.commands import (
+    MAX_DISCRETES,
+    ReadDisabled,
+    ReadDiscretes,
+    ReadMixed,
+    ReadRegisters,
+    Request,
+    WriteDiscretes,
+    WriteMixed,
+    WriteRegisters,
+)
+from fatektool.protocol.elements import Element
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from fatektool.client import Plc
-    from fatektool.protocol.elements import Element
 
 TYPICAL_TURNAROUND_S: Final = 0.010
 """A PLC answers once a program scan: some milliseconds. The plan hardly depends on it."""
+
+_MANY: Final = 32
+_SAMPLES: Final = 5
 
 
 @dataclass(slots=True)
@@ -54,50 +70,187 @@ def read_elements(
         LineError: no answer.
     """
     wanted = list(dict.fromkeys(elements))
-    known = Values()
-    reading = Reading()
-    _read(plc, wanted, known, reading, limits)
-    reading.values = {element: known.value(element) for element in wanted if element not in reading.errors}
+    reader = _Reader(plc, limits)
+    reader.read(wanted)
+    reading = reader.reading
+    reading.errors = {element: reading.errors[element] for element in wanted if element in reading.errors}
+    reading.values = {
+        element: reader.known.value(element) for element in wanted if element not in reading.errors
+    }
     return reading
+
+
+class _Reader:
+    """Reads, and takes apart what is refused."""
+
+    def __init__(self, plc: Plc, limits: Mapping[str, int] | None) -> None:
+        self._plc = plc
+        self._limits = limits
+        self.known = Values()
+        self.reading = Reading()
+
+    def read(self, elements: Sequence[Element]) -> None:
+        """Read all of these, or know why not."""
+        if len(elements) == 1:
+            self._read_alone(elements[0])
+            return
+        requests = plan_reads(
+            elements, self._plc.link.codec, turnaround=_turnaround(self._plc), limits=self._limits
+        )
+        refused = self._ask(requests)
+        if not refused:
+            return
+        missing = [element for element in sorted(elements) if element not in self.known]
+        for part in _by_request(missing, refused):
+            self._take_apart(part)
+
+    def _ask(self, requests: Sequence[Request[Any]]) -> list[Request[Any]]:
+        """Ask all, and go on behind one that is refused; give those."""
+        refused = []
+        while requests:
+            answered = 0
+
+            def count(number: int) -> None:
+                nonlocal answered
+                answered = number
+                self.reading.requests += 1
+
+            try:
+                self._take(requests, ask_all(self._plc.link, requests, count))
+            except PlcRefused:  # those before it are asked again: their answers were not proven yet
+                refused.append(requests[answered])
+                self.reading.requests += 1
+                before = requests[:answered]
+                requests = requests[answered + 1 :]
+                if before:
+                    refused += self._ask(before)
+            else:
+                break
+        return refused
+
+    def _take(self, requests: Sequence[Request[Any]], answers: Sequence[Any]) -> None:
+        for request, answer in zip(requests, answers, strict=True):
+            self.known.take(request, answer)
+
+    def _take_apart(self, elements: list[Element]) -> None:
+        """Read elements whose common request was refused."""
+        if len(elements) >= _MANY and self._all_refused(elements):
+            return
+        left = [e for e in elements if e not in self.known and e not in self.reading.errors]
+        if len(left) == 1:
+            self.read(left)
+        elif left:
+            self.read(left[: len(left) // 2])
+            self.read(left[len(left) // 2 :])
+
+    def _all_refused(self, elements: list[Element]) -> bool:
+        """True if many neighbours, refused together, are each refused: past the PLC's end, or in a gap.
+
+        Asking each of R8072 to R9999 would take minutes on a serial line. So five of them are asked alone,
+        first, last and between: if each is refused, so are the others.
+        """
+        if len({element.symbol for element in elements}) > 1:
+            return False
+        last = len(elements) - 1
+        samples = [elements[last * place // (_SAMPLES - 1)] for place in range(_SAMPLES)]
+        for sample in (samples[-1], *samples[:-1]):
+            self._read_alone(sample)
+            if sample not in self.reading.errors:
+                return False
+        said = self.reading.errors[samples[0]]
+        for element in elements:
+            self.reading.errors.setdefault(element, re.sub(rf"\b{samples[0]}\b", str(element), said))
+        return True
+
+    def _read_alone(self, element: Element) -> None:
+        one = element.kind.bits == 1
+        request: Request[Any] = ReadDiscretes(element, 1) if one else ReadRegisters(element, 1)
+        link = self._plc.link
+        try:
+            self.reading.requests += 1
+            try:
+                self._take([request], ask_all(link, [request]))
+            except PlcRefused:
+                if not link.counters.trouble:
+                    raise
+                link.fence()  # on a bad line it may have been the answer to an earlier request
+                self._take([request], ask_all(link, [request]))
+        except PlcRefused as error:
+            self.reading.errors[element] = error.message
 
 
 def _turnaround(plc: Plc) -> float:
     return turnaround_bytes(TYPICAL_TURNAROUND_S, plc.link.byte_time_s)
 
 
-def _read(
-    plc: Plc, elements: list[Element], known: Values, reading: Reading, limits: Mapping[str, int] | None
-) -> None:
-    """Read all, and take apart what is refused."""
-    if len(elements) == 1:
-        requests: list[Request[Any]] = [_read_alone(elements[0])]
-    else:
-        requests = plan_reads(elements, plc.link.codec, turnaround=_turnaround(plc), limits=limits)
-    reading.requests += len(requests)
+def _parts(request: Request[Any]) -> Iterator[Element]:
+    """The elements that a request reads or writes."""
+    match request:
+        case ReadMixed(elements):
+            yield from elements
+        case WriteMixed(items):
+            yield from (element for element, _ in items)
+        case ReadDiscretes(first, count) | ReadRegisters(first, count):
+            yield from (first.after(place) for place in range(count))
+        case WriteDiscretes(first, values) | WriteRegisters(first, values):
+            yield from (first.after(place) for place in range(len(values)))
+
+
+def _by_request(elements: Sequence[Element], requests: Sequence[Request[Any]]) -> list[list[Element]]:
+    """Elements by the request that they are in; what is in none comes last."""
+    owner: dict[Atom, int] = {}
+    for number, request in enumerate(requests):
+        for part in _parts(request):
+            owner |= dict.fromkeys(atoms_of(part), number)
+    groups: dict[int, list[Element]] = {}
+    for element in elements:
+        number = min(owner.get(atom, len(requests)) for atom in atoms_of(element))
+        groups.setdefault(number, []).append(element)
+    return [groups[number] for number in sorted(groups)]
+
+
+def read_disabled(plc: Plc, elements: Iterable[Element]) -> tuple[dict[Element, bool], dict[Element, str]]:
+    """Which discretes are disabled, and what the PLC said of those that it refused.
+
+    Args:
+        plc: the PLC.
+        elements: discretes of one bit.
+    """
+    flags: dict[Element, bool] = {}
+    errors: dict[Element, str] = {}
+    todo = _runs(elements)
     try:
-        for request, answer in zip(requests, ask_all(plc.link, requests), strict=True):
-            known.take(request, answer)
-    except PlcRefused as error:
-        if len(elements) == 1:
-            reading.errors[elements[0]] = error.message
-            return
-    else:
-        return
-    reading.requests += len(requests)
-    for request in requests:
-        try:
-            known.take(request, plc.link.ask(request))
-        except PlcRefused:
-            continue
-    missing = [element for element in elements if element not in known]
-    middle = len(missing) // 2
-    for part in (missing[:middle], missing[middle:]):
-        if part:
-            _read(plc, part, known, reading, limits)
+        requests = [ReadDisabled(first, count) for first, count in todo]
+        for (first, _), bits in zip(todo, ask_all(plc.link, requests), strict=True):
+            flags |= {first.after(place): bit for place, bit in enumerate(bits)}
+    except PlcRefused:
+        while todo:
+            first, count = todo.pop()
+            try:
+                (bits,) = ask_all(plc.link, [ReadDisabled(first, count)])
+            except PlcRefused as error:
+                if count == 1:
+                    errors[first] = error.message
+                else:
+                    half = count // 2
+                    todo += [(first, half), (first.after(half), count - half)]
+            else:
+                flags |= {first.after(place): bit for place, bit in enumerate(bits)}
+    return flags, errors
 
 
-def _read_alone(element: Element) -> Request[Any]:
-    return ReadDiscretes(element, 1) if element.kind.bits == 1 else ReadRegisters(element, 1)
+def _runs(elements: Iterable[Element]) -> list[tuple[Element, int]]:
+    """Neighbours together, as many as one request asks for."""
+    runs: list[tuple[Element, int]] = []
+    for element in sorted(set(elements)):
+        if runs:
+            first, count = runs[-1]
+            near = (element.symbol, element.address) == (first.symbol, first.address + count)
+            if near and count < MAX_DISCRETES:
+                runs[-1] = (first, count + 1)
+                continue
+        runs.append((element, 1))
+    return runs
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,41 +279,72 @@ def write_elements(plc: Plc, items: Sequence[tuple[Element, int]]) -> list[NotTa
 
     Raises:
         UsageError: two of them share a discrete or register; nothing was sent.
-        LineError: no answer.
+        LineError: no answer; some of them may be written.
     """
     both = overlapping(element for element, _ in items)
     if both is not None:
         raise UsageError(f"{both[0]} and {both[1]} overlap: what should be there?")
     refused: dict[Element, str] = {}
-    _write(plc, list(items), refused)
+    _write(plc, list(items), refused, looked=False)
     found = read_elements(plc, [element for element, _ in items])
+    failed = [
+        (element, wanted)
+        for element, wanted in items
+        if found.values.get(element) != wanted or element in refused
+    ]
+    acknowledged = [
+        (element, wanted ^ found.values[element])
+        for element, wanted in failed
+        if element not in refused and element in found.values
+    ]
+    reasons = found.errors | _why(plc, acknowledged) | refused
+    return [
+        NotTaken(element, wanted, found.values.get(element), reasons[element]) for element, wanted in failed
+    ]
+
+
+def _write(plc: Plc, items: list[tuple[Element, int]], refused: dict[Element, str], *, looked: bool) -> None:
+    """Write all, and take apart what is refused.
+
+    Args:
+        plc: the PLC.
+        items: elements with values.
+        refused: gets what the PLC says of those that it refuses.
+        looked: True if all of them can be read, so that it is the writing that is refused.
+    """
+    requests = [_write_alone(*items[0])] if len(items) == 1 else _plan(plc, items)
     failed = []
-    for element, wanted in items:
-        got = found.values.get(element)
-        if got != wanted or element in refused:
-            reason = refused.get(element) or found.errors.get(element) or _why(plc, element)
-            failed.append(NotTaken(element, wanted, got, reason))
-    return failed
-
-
-def _write(plc: Plc, items: list[tuple[Element, int]], refused: dict[Element, str]) -> None:
-    if len(items) == 1:
-        requests: list[Request[None]] = [_write_alone(*items[0])]
-    else:
-        requests = plan_writes(items, plc.link.codec, turnaround=_turnaround(plc))
-    again = False
+    said = ""
     for request in requests:
         try:
             plc.link.ask(request)
         except PlcRefused as error:
-            again = True
-            if len(items) == 1:
-                refused[items[0][0]] = error.message
-                return
-    if again:  # writing the same value twice does no harm
-        middle = len(items) // 2
-        _write(plc, items[:middle], refused)
-        _write(plc, items[middle:], refused)
+            failed.append(request)
+            said = error.message
+    if not failed:
+        return
+    if len(items) == 1:
+        refused[items[0][0]] = said
+        return
+    values = dict(items)
+    groups = _by_request(sorted(values), failed)
+    if len(groups) > len(failed):
+        groups.pop()  # those whose requests were not refused
+    left = [element for group in groups for element in group]
+    if not looked:
+        errors = read_elements(plc, left).errors
+        refused |= errors
+        groups = [[element for element in group if element not in errors] for group in groups]
+    for group in groups:
+        pairs = [(element, values[element]) for element in group]
+        parts = [pairs[: len(pairs) // 2], pairs[len(pairs) // 2 :]] if looked else [pairs]
+        for part in parts:
+            if part:
+                _write(plc, part, refused, looked=True)
+
+
+def _plan(plc: Plc, items: list[tuple[Element, int]]) -> list[Request[None]]:
+    return plan_writes(items, plc.link.codec, turnaround=_turnaround(plc))
 
 
 def _write_alone(element: Element, value: int) -> Request[None]:
@@ -169,14 +353,39 @@ def _write_alone(element: Element, value: int) -> Request[None]:
     return WriteRegisters(element, (value,))
 
 
-def _why(plc: Plc, element: Element) -> str:
-    """Why a write that was acknowledged did not take."""
-    if element.kind.bits == 1:
-        try:
-            if plc.read_disabled(element, 1)[0]:
-                return "it is disabled: 'fatektool discrete enable' gives it back"
-        except PlcRefused:
-            pass
-    if element.symbol.endswith("X"):
-        return "an input follows its terminal unless it is disabled"
-    return "acknowledged, but it holds something else: read-only, or the program writes it too"
+def _why(plc: Plc, failed: list[tuple[Element, int]]) -> dict[Element, str]:
+    """Why writes that were acknowledged did not take.
+
+    Args:
+        plc: the PLC.
+        failed: elements, and the bits that are not as they were written.
+    """
+    suspects: dict[Element, list[Element]] = {}
+    for element, wrong in failed:
+        atoms = atoms_of(element)
+        if element.kind.bits == len(atoms):
+            suspects[element] = [Element(*atom) for place, atom in enumerate(atoms) if wrong >> place & 1]
+    flags, _ = read_disabled(plc, [each for some in suspects.values() for each in some])
+    reasons = {}
+    for element, _ in failed:
+        held = [each for each in suspects.get(element, ()) if flags.get(each)]
+        if held:
+            names = "it is" if held == [element] else f"{named(map(str, held))} {'are' if held[1:] else 'is'}"
+            reasons[element] = (
+                f"{names} disabled: 'fatektool discrete set' and 'reset' still switch it, "
+                f"'discrete enable' gives it back"
+            )
+        elif element.symbol.endswith("X"):
+            reasons[element] = "an input follows its terminal unless it is disabled"
+        else:
+            reasons[element] = (
+                "acknowledged, but it holds something else: read-only, or the program writes it too"
+            )
+    return reasons
+
+
+def named(names: Iterable[str], most: int = 5) -> str:
+    """Some names for a message: the first few, and how many more there are."""
+    listed = list(names)
+    more = f" and {len(listed) - most} more" if len(listed) > most else ""
+    return ", ".join(listed[:most]) + more

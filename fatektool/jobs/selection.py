@@ -109,7 +109,7 @@ def _type(text: str | None, whole: str) -> ValueType | None:
 def _count(text: str, first: Element, last: str | None, count: str | None, stride: int) -> int:
     if count is not None:
         number = int(count[:9])
-        if not 1 <= number <= _MOST:
+        if not 1 <= number <= _MOST or len(count) > 9:
             raise UsageError(f"{text!r}: count: expected 1 to {_MOST}, got {count}")
         return number
     if last is None:
@@ -128,16 +128,21 @@ def _count(text: str, first: Element, last: str | None, count: str | None, strid
 
 def overlapping(elements: Iterable[Element]) -> tuple[Element, Element] | None:
     """Two of these elements that share a discrete or register; None if none do."""
-    from fatektool.planner.atoms import atoms_of
-
     owner: dict[tuple[str, int], Element] = {}
     for element in elements:
-        atoms = atoms_of(element)
-        symbol = atoms[0][0]
-        if KINDS[symbol].bits == 32:  # a counter's double register is two of the single ones
-            atoms = [(symbol[1:], element.address), (symbol[1:], element.address + 1)]
-        for atom in atoms:
+        for atom in places_of(element):
             other = owner.setdefault(atom, element)
             if other is not element:
                 return other, element
     return None
+
+
+def places_of(element: Element) -> list[tuple[str, int]]:
+    """The discretes or registers that an element is made of, the lowest first."""
+    from fatektool.planner.atoms import atoms_of
+
+    atoms = atoms_of(element)
+    symbol = atoms[0][0]
+    if KINDS[symbol].bits == 32:  # a counter's double register is two of the single ones
+        return [(symbol[1:], element.address), (symbol[1:], element.address + 1)]
+    return atoms

@@ -11,18 +11,22 @@
 from __future__ import annotations
 
 import json
+import math
+import os
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.errors import DataError, UsageError
 from fatektool.jobs.registers import read_elements
 from fatektool.jobs.times import utc
-from fatektool.program.files import read_bounded
+from fatektool.program.files import file_error
 from fatektool.protocol.elements import Element
-from fatektool.protocol.values import Value, decode
+from fatektool.protocol.values import NUMBERS, Value, ValueType, decode
+from fatektool.transport.base import no_note
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
     from fatektool.client import Plc
@@ -30,6 +34,10 @@ if TYPE_CHECKING:
 
 SCHEMA: Final = "fatektool.snapshot/1"
 MAX_SNAPSHOT: Final = 64 << 20
+_LINES_LOOKED_AT: Final = 100
+_LARGEST: Final = 1.7e308
+_TIME: Final = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?Z", re.ASCII)
+_HEX: Final = re.compile(r"[0-9A-F]{1,8}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +102,7 @@ def take_snapshot(
             errors[key] = reading.errors[element]
             continue
         try:
-            values[key] = _scaled(decode(raw, item.item.type, element.kind.bits), item)
+            values[key] = value_of(raw, item.item.type, element.kind.bits, item.scale, item.offset)
         except DataError as error:
             errors[key] = error.message
     return Snapshot(
@@ -125,62 +133,162 @@ def _element(item: SpecItem, raw: int | None) -> dict[str, Any]:
     return found
 
 
-def _scaled(value: Value, item: SpecItem) -> Value:
-    if item.scale is None and item.offset is None:
+def value_of(raw: int, kind: ValueType, bits: int, scale: float | None, offset: float | None) -> Value:
+    """Raw bits as a value, scaled.
+
+    Raises:
+        DataError: the bits are no such value.
+    """
+    value = decode(raw, kind, bits)
+    if scale is None and offset is None:
         return value
     # Twelve digits: 21.400000000000002 is 214 * 0.1, and nobody's measurement.
-    scale = 1.0 if item.scale is None else item.scale
-    return float(f"{float(value) * scale + (item.offset or 0.0):.12g}")
+    number = float(f"{float(value) * (1.0 if scale is None else scale) + (offset or 0.0):.12g}")
+    if not math.isfinite(number):
+        raise DataError(f"{value} scaled is too large for a number")
+    return number
 
 
-def parse_snapshot(data: bytes, name: str) -> Snapshot:
-    """Read a snapshot: a JSON document, or the last line of an NDJSON file.
+def parse_snapshot(data: bytes, name: str, note: Callable[[str], None] = no_note) -> Snapshot:
+    """Read a snapshot: a JSON document, or the last whole line of an NDJSON file.
+
+    Args:
+        data: the file's bytes.
+        name: its name, for messages.
+        note: is told when the file's last line is broken, and an earlier one is taken.
 
     Raises:
         DataError: it is none, or damaged; says what.
     """
-    text = data.strip()
-    try:
-        document = json.loads(text.decode())
-    except (ValueError, RecursionError):
-        try:
-            document = json.loads(text.rpartition(b"\n")[2].decode())
-        except (ValueError, RecursionError) as error:
-            raise DataError(f"{name}: no snapshot: {error}", hint="is it the right file?") from error
+    document = _document(data, name, note)
     if not isinstance(document, dict) or document.get("schema") != SCHEMA:
-        raise DataError(f"{name}: no snapshot: expected schema {SCHEMA!r}", hint="is it the right file?")
-    kinds = {
-        "time": str, "target": str, "station": int, "protocol": str, "running": bool,
-        "duration_s": (int, float), "requests": int, "values": dict, "elements": dict, "errors": dict,
-    }  # fmt: skip
-    for key, kind in kinds.items():
-        if not isinstance(document.get(key), kind):  # type: ignore[arg-type]  # a type or a tuple of them
-            raise DataError(f"{name}: {key} is missing or damaged")
+        found = document.get("schema") if isinstance(document, dict) else None
+        raise DataError(
+            f"{name}: no snapshot: expected schema {SCHEMA!r}, got {found!r:.80}",
+            hint="is it the right file?",
+            file=name,
+        )
+    for key, holds in _CHECKS.items():
+        if not holds(document.get(key)):
+            raise DataError(f"{name}: {key} is missing or damaged", file=name)
+    if set(document["values"]) != set(document["elements"]):
+        key = min(set(document["values"]) ^ set(document["elements"]))
+        raise DataError(f"{name}: {key!r} stands in one of values and elements only", file=name)
     for key, part in document["elements"].items():
-        if not _holds(part, document["values"], key):
-            raise DataError(f"{name}: element {key!r} is damaged")
-    return Snapshot(**{key: document[key] for key in kinds})
+        _check(part, document["values"][key], f"{name}: element {key!r}")
+    return Snapshot(**{key: document[key] for key in _CHECKS})
 
 
-def _holds(part: object, values: dict[str, object], key: str) -> bool:
-    if not isinstance(part, dict) or key not in values:
-        return False
+def _document(data: bytes, name: str, note: Callable[[str], None]) -> object:
     try:
-        element = Element.parse(part["element"])
-        raw = part["raw"]
-        return raw is None or 0 <= int(raw, 16) < 1 << element.kind.bits
-    except (KeyError, TypeError, ValueError, AttributeError, UsageError):
+        return _json(data)
+    except (ValueError, RecursionError) as error:
+        first = error
+    lines = data.strip().split(b"\n")[-_LINES_LOOKED_AT:]
+    for number, line in enumerate(reversed(lines)):
+        try:
+            document = _json(line)
+        except (ValueError, RecursionError):
+            continue
+        if isinstance(document, dict) and "schema" in document:
+            if number:
+                taken = f"the snapshot of {document.get('time')} is taken instead"
+                note(f"{name}: the last line is broken: {taken}")
+            return document
+    raise DataError(
+        f"{name}: no snapshot, or a damaged one: {first}", hint="is it the right file?", file=name
+    ) from first
+
+
+def _json(data: bytes) -> object:
+    return json.loads(data.decode(), parse_constant=_no_number)
+
+
+def _no_number(text: str) -> float:
+    raise ValueError(f"{text} is no number")
+
+
+def _finite(value: object) -> bool:
+    if isinstance(value, bool) or not isinstance(value, int | float):
         return False
+    return -_LARGEST < value < _LARGEST
 
 
-def load_snapshot(path: Path) -> Snapshot:
-    """Read a snapshot file, or the last line of an NDJSON one.
+def _is_value(value: object) -> bool:
+    return value is None or isinstance(value, bool | str) or _finite(value)
+
+
+_CHECKS: Final[dict[str, Callable[[Any], bool]]] = {
+    "time": lambda value: isinstance(value, str) and _TIME.fullmatch(value) is not None,
+    "target": lambda value: isinstance(value, str),
+    "station": lambda value: type(value) is int and 1 <= value <= 254,
+    "protocol": lambda value: isinstance(value, str),
+    "running": lambda value: isinstance(value, bool),
+    "duration_s": lambda value: _finite(value) and value >= 0,
+    "requests": lambda value: type(value) is int and value >= 0,
+    "values": lambda value: isinstance(value, dict) and all(map(_is_value, value.values())),
+    "elements": lambda value: isinstance(value, dict),
+    "errors": lambda value: isinstance(value, dict) and all(isinstance(text, str) for text in value.values()),
+}
+
+
+def _check(part: object, value: Value | None, where: str) -> None:
+    """Check what a snapshot says of one element, and that its value is what its raw bits say.
+
+    Raises:
+        DataError: it does not hold.
+    """
+    if not isinstance(part, dict):
+        raise DataError(f"{where} is damaged: expected an object")
+    raw, scale, offset = part.get("raw"), part.get("scale"), part.get("offset")
+    try:
+        element, kind = Element.parse(part["element"]), ValueType(part["type"])
+    except (KeyError, TypeError, ValueError, AttributeError, UsageError) as error:
+        raise DataError(f"{where} is damaged: element or type") from error
+    bits = element.kind.bits
+    if kind.bits not in {None, bits} or (kind.bits is None and bits == 1):
+        raise DataError(f"{where} is damaged: {element} is no {kind.value}")
+    numbers = all(each is None or _finite(each) for each in (scale, offset))
+    scaled = (scale, offset) != (None, None)
+    if not numbers or not isinstance(part.get("unit", ""), str) or (scaled and kind not in NUMBERS):
+        raise DataError(f"{where} is damaged: unit, scale or offset")
+    if raw is None and "raw" in part:
+        if value is None:
+            return
+        raise DataError(f"{where} is damaged: a value without raw bits")
+    if not isinstance(raw, str) or not _HEX.fullmatch(raw) or int(raw, 16) >= 1 << bits:
+        raise DataError(f"{where} is damaged: raw: expected {bits} bits in hex, got {raw!r:.40}")
+    try:
+        expected = value_of(int(raw, 16), kind, bits, scale, offset)
+    except DataError:
+        expected = None
+    if expected != value or isinstance(expected, bool) != isinstance(value, bool):
+        raise DataError(
+            f"{where}: its value is {value!r:.40}, and its raw bits {raw} say {expected!r:.40}",
+            hint="the raw bits are what is put back: change both, or use 'fatektool write'",
+        )
+
+
+def load_snapshot(path: Path, note: Callable[[str], None] = no_note) -> Snapshot:
+    """Read a snapshot file, or the last whole line of an NDJSON one, however long that is.
+
+    Args:
+        path: the file.
+        note: is told when the file's last line is broken, and an earlier one is taken.
 
     Raises:
         UsageError: there is no such file.
         DataError: it is none, or damaged.
     """
-    return parse_snapshot(read_bounded(path, MAX_SNAPSHOT), str(path))
+    try:
+        with path.open("rb") as file:
+            data = file.read(MAX_SNAPSHOT + 1)
+            if len(data) > MAX_SNAPSHOT:  # years of lines: the end is what counts
+                file.seek(-MAX_SNAPSHOT, os.SEEK_END)
+                data = file.read(MAX_SNAPSHOT).partition(b"\n")[2]
+    except (OSError, ValueError) as error:
+        raise file_error("read", path, error) from error
+    return parse_snapshot(data, str(path), note)
 
 
 def raw_of(snapshot: Snapshot) -> dict[str, tuple[Element, int | None]]:

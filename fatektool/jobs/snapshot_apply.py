@@ -12,17 +12,17 @@ from typing import TYPE_CHECKING
 
 from fatektool.errors import DataError, LineError, RestoreIncomplete
 from fatektool.jobs.registers import NotTaken, write_elements
-from fatektool.jobs.selection import Item
+from fatektool.jobs.selection import Item, places_of
 from fatektool.jobs.snapshot import Snapshot, raw_of, take_snapshot
 from fatektool.jobs.snapshot_spec import SpecItem
 from fatektool.planner.atoms import atoms_of
+from fatektool.protocol.elements import Element
 from fatektool.protocol.values import ValueType
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from fatektool.client import Plc
-    from fatektool.protocol.elements import Element
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,27 +31,39 @@ class ApplyPlan:
 
     Attributes:
         present: the same items as they are now.
-        changes: key, element, raw bits now (None if the PLC refuses it) and raw bits on file.
+        changes: key, element, and raw bits on file.
         inputs: keys of inputs that differ; they are not written.
         missing: keys that the snapshot has no value for; they are not written.
+        refused: keys that this PLC refuses, and what it says; they are not written.
     """
 
     present: Snapshot
-    changes: tuple[tuple[str, Element, int | None, int], ...]
+    changes: tuple[tuple[str, Element, int], ...]
     inputs: tuple[str, ...]
     missing: tuple[str, ...]
+    refused: dict[str, str]
 
     @property
     def writes(self) -> list[tuple[Element, int]]:
-        """What is written, each discrete and register once."""
-        claimed: dict[tuple[str, int], int] = {}
+        """What is written, each discrete and register once: the widest element that it is part of."""
+        claimed: set[tuple[str, int]] = set()
         found = []
-        for _, element, _, wanted in self.changes:
-            atoms = atoms_of(element)
-            if any(atom not in claimed for atom in atoms):
-                claimed |= dict.fromkeys(atoms, 1)
+        for _, element, wanted in sorted(self.changes, key=lambda change: -change[1].kind.bits):
+            places = places_of(element)
+            free = [place for place in places if place not in claimed]
+            claimed.update(free)
+            if len(free) == len(places):
                 found.append((element, wanted))
+                continue
+            width = element.kind.bits // len(places)
+            for number, place in enumerate(places):
+                if place in free:
+                    found.append((Element(*place), wanted >> (number * width) & ((1 << width) - 1)))
         return found
+
+    def keys(self) -> dict[Element, str]:
+        """What the snapshot calls an element that is written."""
+        return {element: key for key, element, _ in reversed(self.changes)}
 
 
 def plan_apply(plc: Plc, snapshot: Snapshot, only: Iterable[str] = ()) -> ApplyPlan:
@@ -81,16 +93,18 @@ def plan_apply(plc: Plc, snapshot: Snapshot, only: Iterable[str] = ()) -> ApplyP
     ]
     present = take_snapshot(plc, items)
     now = raw_of(present)
-    changes, inputs, missing = [], [], []
+    changes, inputs, missing, refused = [], [], [], {}
     for key, (element, raw) in wanted.items():
         if raw is None:
             missing.append(key)
+        elif now[key][1] is None:
+            refused[key] = present.errors[key]
         elif now[key][1] != raw:
             if element.symbol.endswith("X"):
                 inputs.append(key)
             else:
-                changes.append((key, element, now[key][1], raw))
-    return ApplyPlan(present, tuple(changes), tuple(inputs), tuple(missing))
+                changes.append((key, element, raw))
+    return ApplyPlan(present, tuple(changes), tuple(inputs), tuple(missing), refused)
 
 
 def _scale(snapshot: Snapshot, key: str) -> tuple[float | None, float | None, str | None]:
@@ -132,9 +146,10 @@ def apply_plan(plc: Plc, plan: ApplyPlan, safety: str | None) -> list[NotTaken]:
     except (LineError, KeyboardInterrupt) as error:
         cause = error.message if isinstance(error, LineError) else "interrupted"
         count = len(plan.changes)
+        where = f"lie in {safety}" if safety else "were not saved"
         raise RestoreIncomplete(
             f"the snapshot was not applied whole ({cause}): some of {count} values may be written",
-            hint=f"run it again: it writes what is left; the values before lie in {safety or 'no file'}",
+            hint=f"run it again: it writes what is left; the values before {where}",
             safety_snapshot=safety,
             cause=cause,
         ) from error

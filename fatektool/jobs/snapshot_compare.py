@@ -15,17 +15,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """One value that differs. None stands for a value that is not there.
+    """One value that differs. None stands for a value that could not be read, or a key that is not there.
 
     Attributes:
         key: which.
         a: in the first.
         b: in the second.
+        absent: the one that has no such key, ``a`` or ``b``; None if both have it.
     """
 
     key: str
     a: Value | None
     b: Value | None
+    absent: str | None = None
 
 
 def compare_snapshots(
@@ -45,9 +47,9 @@ def compare_snapshots(
         if any(fnmatchcase(key, glob) for glob in ignored):
             continue
         one, other = a.values.get(key), b.values.get(key)
-        present = (key in a.values) == (key in b.values)
-        if not present or not _alike(one, other, tolerance):
-            changes.append(Change(key, one, other))
+        absent = "a" if key not in a.values else "b" if key not in b.values else None
+        if absent or not _alike(one, other, tolerance):
+            changes.append(Change(key, one, other, absent))
     return changes
 
 

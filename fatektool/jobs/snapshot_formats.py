@@ -53,7 +53,11 @@ def as_csv(snapshot: Snapshot) -> str:
 
 
 def as_influx(snapshot: Snapshot) -> str:
-    """InfluxDB line protocol: measurement ``fatek``, a line an item, nanoseconds."""
+    """InfluxDB line protocol: measurement ``fatek``, a line an item, nanoseconds.
+
+    A field has one type in all lines of a measurement, or InfluxDB drops those that came later. So numbers
+    are floats, discretes 1 and 0 among them, in the field ``value``, and hex is in the field ``text``.
+    """
     stamp = _seconds(snapshot) * 1_000_000_000
     lines = []
     for key, value in snapshot.values.items():
@@ -67,7 +71,7 @@ def as_influx(snapshot: Snapshot) -> str:
             "unit": snapshot.elements[key].get("unit"),
         }
         named = ",".join(f"{name}={_influx_tag(text)}" for name, text in tags.items() if text)
-        lines.append(f"fatek,{named} value={_influx_value(value)} {stamp}\n")
+        lines.append(f"fatek,{named} {_influx_field(value)} {stamp}\n")
     return "".join(lines)
 
 
@@ -118,18 +122,16 @@ def _plain(value: Value | None) -> str:
 
 
 def _influx_tag(text: str) -> str:
-    return re.sub(r"([,= \\])", r"\\\1", text.replace("\n", " "))
+    """A tag's value. A backslash stands for itself and cannot be escaped, so none can be the last."""
+    plain = re.sub(r"[\x00-\x1f\x7f]", " ", text).rstrip("\\")
+    return re.sub(r"([,= ])", r"\\\1", plain or "-")
 
 
-def _influx_value(value: Value) -> str:
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, int):
-        return f"{value}i"
-    if isinstance(value, float):
-        return repr(value)
-    quoted = value.replace("\\", "\\\\").replace('"', '\\"')
-    return f'"{quoted}"'
+def _influx_field(value: Value) -> str:
+    if isinstance(value, str):
+        quoted = value.replace("\\", "\\\\").replace('"', '\\"')
+        return f'text="{quoted}"'
+    return f"value={int(value) if isinstance(value, bool) else value!r}"
 
 
 def _label(text: str) -> str:

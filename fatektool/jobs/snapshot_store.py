@@ -11,19 +11,23 @@ import os
 import re
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import UsageError
 from fatektool.jobs.times import stamp
-from fatektool.program.files import file_error, free_name, require_folder, write_whole
+from fatektool.program.files import file_error, require_folder, require_place, write_whole
 from fatektool.transport.lock import PortLock
 
 if TYPE_CHECKING:
     from fatektool.jobs.snapshot import Snapshot
 
 _KEEP: Final = re.compile(r"([1-9][0-9]{0,8})(d?)", re.ASCII)
-_DATED: Final = re.compile(r"fatek-st(\d\d+)-(\d{8}T\d{6}Z)(?:-\d+)?\.(\w+)", re.ASCII)
+_DATED: Final = re.compile(r"snapshot-st(\d\d+)-(\d{8}T\d{6}Z)(?:-(\d{1,9}))?\.(\w+)", re.ASCII)
+_START: Final = b'{"schema":"fatektool.snapshot/'
+_OBJECT: Final = re.compile(rb'\{[ \t]*"')
+_OURS: Final = re.compile(rb'\{[ \t]*"schema"[ \t]*:[ \t]*"fatektool\.snapshot/')
 _LINE_TIME: Final = re.compile(rb'"time":\s*"(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d)')
 
 
@@ -75,48 +79,67 @@ def save_dated(
         DataError: the disk is full or broken.
     """
     require_folder(folder)
-    path = free_name(folder, f"fatek-st{snapshot.station:02}-{stamp(snapshot.time)}", suffix)
-    write_whole(path, text.encode(), overwrite=False)
+    stem = f"snapshot-st{snapshot.station:02}-{stamp(snapshot.time)}"
+    data = encoded(text)
+    path = folder / f"{stem}.{suffix}"
+    for number in count(2):
+        try:
+            write_whole(path, data, overwrite=False)
+            break
+        except UsageError:
+            if not os.path.lexists(path):
+                raise
+        path = folder / f"{stem}-{number}.{suffix}"  # there is one of this second already
     if keep is not None:
-        _drop_files(folder, snapshot.station, suffix, keep, now or datetime.now(UTC))
+        try:
+            _drop_files(folder, snapshot.station, suffix, keep, now or datetime.now(UTC))
+        except OSError as error:
+            raise file_error("drop old snapshots in", folder, error) from error
     return path
+
+
+def encoded(text: str) -> bytes:
+    """Text as a file has it; a target that is no UTF-8 is shown with escapes."""
+    return text.encode(errors="backslashreplace")
 
 
 def _drop_files(folder: Path, station: int, suffix: str, keep: Keep, now: datetime) -> None:
     dated = []
     for path in folder.iterdir():
         match = _DATED.fullmatch(path.name)
-        if match and int(match[1]) == station and match[3] == suffix:
-            dated.append((match[2], path.name, path))
+        if match and int(match[1]) == station and match[4] == suffix:
+            dated.append((match[2], int(match[3] or 1), path))
     dated.sort()
     oldest = stamp(keep.oldest(now) + "Z")
-    old = (
-        [path for time, _, path in dated if time < oldest]
-        if keep.days
-        else [p for *_, p in dated[: -keep.number]]
-    )
+    old = [path for time, _, path in dated if time < oldest] if keep.days else []
+    if not keep.days:
+        old = [path for *_, path in dated[: -keep.number]]
     for path in old:
         path.unlink(missing_ok=True)
 
 
-def append_line(path: Path, line: str, keep: Keep | None, now: datetime | None = None) -> None:
+def append_line(
+    path: Path, line: str, keep: Keep | None, *, now: datetime | None = None, wait_s: float = 60.0
+) -> None:
     """Append one line, under a lock, in one write, on disk when this returns.
 
     Args:
         path: the file; it is made if it is not there.
         line: with its newline.
-        keep: what is kept of the file's lines; None for all.
+        keep: what is kept of the file's snapshots; None for all.
         now: the present, for tests.
+        wait_s: how long to wait for another process that appends.
 
     Raises:
-        UsageError: the file cannot be written.
-        DataError: the disk is full or broken.
+        UsageError: the file cannot be written, or holds something else.
+        DataError: the disk is full or broken; the file is as it was.
         PortBusy: another process holds the file for long.
     """
-    real = Path(os.path.realpath(path))
-    lock = PortLock(str(real), 60.0)
+    real = require_lines(path, keep)
+    lock = PortLock(str(real), wait_s)
     lock.acquire()
     try:
+        require_lines(path, keep)
         _append(real, line.encode())
         if keep is not None:
             _drop_lines(real, keep, now or datetime.now(UTC))
@@ -126,27 +149,75 @@ def append_line(path: Path, line: str, keep: Keep | None, now: datetime | None =
         lock.release()
 
 
+def require_lines(path: Path, keep: Keep | None) -> Path:
+    """Check that a line can be appended here, and that it would not spoil a file of something else.
+
+    Args:
+        path: the file; it need not be there.
+        keep: if it is not None, the file may have to be replaced.
+
+    Returns:
+        The path that it really has.
+
+    Raises:
+        UsageError: it holds something else, or cannot be written.
+    """
+    real = Path(os.path.realpath(path))
+    if keep is not None or not real.is_file():
+        require_place(path, overwrite=True)
+    if not real.exists():
+        return real
+    if not os.access(real, os.W_OK):
+        raise UsageError(f"{path} is not writable", hint="check its rights", file=str(path))
+    try:
+        with real.open("rb") as file:
+            start = file.read(len(_START)).strip()
+    except OSError as error:
+        raise file_error("read", path, error) from error
+    if not _START.startswith(start) and not _OBJECT.match(start):
+        raise UsageError(
+            f"{path} holds something else than snapshots, a line each, and is kept as it is",
+            hint="name another file",
+            file=str(path),
+        )
+    return real
+
+
 def _append(path: Path, data: bytes) -> None:
     flags = os.O_RDWR | os.O_APPEND | os.O_CREAT | getattr(os, "O_BINARY", 0)
     with os.fdopen(os.open(path, flags, 0o640), "r+b", buffering=0) as file:
         size = file.seek(0, os.SEEK_END)
         if size:
             file.seek(size - 1)
-            if file.read(1) != b"\n":
+            if file.read(1) != b"\n":  # a crash left half a line: close it off
                 data = b"\n" + data
-        written = file.write(data)
-        if written != len(data):  # a full disk: take the half line back
+        try:
+            written = file.write(data)
+            if written != len(data):
+                file.write(data[written:])  # says what the matter is
+            os.fsync(file.fileno())
+        except OSError:  # a full disk: take the half line back
             file.truncate(size)
-            raise OSError(28, "No space left on device")
-        os.fsync(file.fileno())
+            raise
 
 
 def _drop_lines(path: Path, keep: Keep, now: datetime) -> None:
+    """Leave out the lines of old snapshots, and half lines among them; what is none of ours stays."""
     lines = path.read_bytes().splitlines(keepends=True)
-    if keep.days:
-        oldest = keep.oldest(now).encode()
-        kept = [line for line in lines if (time := _LINE_TIME.search(line)) is None or time[1] >= oldest]
-    else:
-        kept = lines[-keep.number :]
+    oldest = keep.oldest(now).encode()
+    left = keep.number
+    kept = []
+    for line in reversed(lines):
+        time = _LINE_TIME.search(line)
+        if not _OURS.match(line) and not _START.startswith(line.rstrip()):
+            kept.append(line)
+        elif keep.days:
+            if time is not None and time[1] >= oldest:
+                kept.append(line)
+        elif left and line.endswith(b"}\n"):
+            kept.append(line)
+            left -= 1
     if len(kept) < len(lines):
-        write_whole(path, b"".join(kept), overwrite=True)
+        mode = path.stat().st_mode & 0o777
+        write_whole(path, b"".join(reversed(kept)), overwrite=True)
+        path.chmod(mode)  # whoever could read it still can

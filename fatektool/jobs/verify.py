@@ -37,7 +37,7 @@ def verify(plc: Plc, program: Program, *, progress: Progress = no_progress) -> C
     if different:
         pages = list(found.pages)
         total = len(different)
-        again = plc.read_pages(different, lambda done: progress("reading differences again", done, total))
+        again = plc.read_pages(different, lambda done: progress("reading again", done, total))
         for number, page in zip(different, again, strict=True):
             pages[number] = page
         found = replace(found, pages=tuple(pages))

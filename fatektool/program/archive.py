@@ -13,12 +13,14 @@ from __future__ import annotations
 
 import json
 import re
+import reprlib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.errors import DataError
 from fatektool.program.files import read_bounded, write_whole
 from fatektool.program.image import PAGE_BYTES, Program, page_count
+from fatektool.program.plc_record import fault_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -185,9 +187,10 @@ class _Reader:
             self.same(f"header.{key} (page 0)", value, header.get(key))
         if not _TIME.fullmatch(found.created):
             raise self.fault("created: expected a UTC time such as 2026-11-22T03:15:00Z", found.created)
-        system = self.part(found.plc, "system", "plc.")
-        self.part(found.plc, "status", "plc.")
-        self.same("plc.system.ladder_words", ladder_words, system.get("ladder_words"))
+        fault = fault_of(found.plc)
+        if fault is not None:
+            raise self.fault(*fault)
+        self.same("plc.system.ladder_words", ladder_words, found.plc["system"]["ladder_words"])
         return found
 
     def pages(self, document: dict[str, Any], ladder_words: int) -> tuple[bytes, ...]:
@@ -246,5 +249,5 @@ class _Reader:
 
 
 def _short(value: object) -> str:
-    text = repr(value)
-    return text if len(text) <= 60 else f"{text[:40]}… ({len(text)} characters)"
+    size = f" ({len(value)} characters)" if isinstance(value, str) and len(value) > 30 else ""
+    return reprlib.repr(value) + size

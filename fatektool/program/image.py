@@ -124,8 +124,11 @@ class Program:
         """The hash by which two people can tell whether they hold the same program."""
         return hashlib.sha256(self.data).hexdigest()
 
-    def require_header(self) -> None:
+    def require_header(self, hint: str | None = None) -> None:
         """Raise unless the header holds.
+
+        Args:
+            hint: the next step.
 
         Raises:
             DataError: it does not; says what.
@@ -134,7 +137,7 @@ class Program:
         if faults:
             raise DataError(
                 f"the program's header (page 0) does not hold: {'; '.join(faults)}",
-                hint="run it again; if it stays so, --any-header keeps the image as it is, marked as such",
+                hint=hint,
                 page=0,
                 faults=list(faults),
             )

@@ -45,8 +45,11 @@ _BITS: Final = {
     ValueType.BCD: None,
     ValueType.HEX: None,
 }
+NUMBERS: Final = frozenset(ValueType) - {ValueType.BOOL, ValueType.HEX}
+"""The types whose values are numbers, which can be scaled."""
 _ON: Final = {"on": 1, "true": 1, "1": 1, "off": 0, "false": 0, "0": 0}
 _INTEGER: Final = re.compile(r"[+-]?(0[xX][0-9A-Fa-f]+|0[bB][01]+|[0-9]+)", re.ASCII)
+_LONGEST: Final = 1000
 _REAL: Final = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?", re.ASCII)
 
 
@@ -109,8 +112,10 @@ def encode(text: str, kind: ValueType | None, bits: int) -> int:
         text = "0x" + text.removeprefix("0x").removeprefix("0X")
     if not _INTEGER.fullmatch(text):
         raise UsageError(f"value {text!r}: expected a whole number such as 4261, -1 or 0x10A5")
-    number = int(text, 10 if text.lstrip("+-").isdecimal() else 0)
     least, most = _range(kind, bits)
+    if len(text) > _LONGEST:
+        raise UsageError(f"value {text[:20]}…: expected {least} to {most}")
+    number = int(text, 10 if text.lstrip("+-").isdecimal() else 0)
     if not least <= number <= most:
         raise UsageError(
             f"value {text}: expected {least} to {most} for {kind.value if kind else f'{bits} bits'}"
@@ -135,7 +140,10 @@ def _range(kind: ValueType | None, bits: int) -> tuple[int, int]:
 def _float_bits(text: str) -> int:
     if not _REAL.fullmatch(text):
         raise UsageError(f"value {text!r}: expected a number such as 1.5 or -3e-2")
+    number = float(text)
     try:
-        return int.from_bytes(struct.pack(">f", float(text)), "big")
+        if math.isfinite(number):
+            return int.from_bytes(struct.pack(">f", number), "big")
     except OverflowError:
-        raise UsageError(f"value {text}: too large for f32") from None
+        pass
+    raise UsageError(f"value {text:.60}: too large for f32")

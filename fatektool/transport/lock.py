@@ -83,7 +83,7 @@ class PortLock:
         """
         deadline = self._clock() + self._wait_s
         while not self._try():
-            if self._clock() >= deadline:
+            if not self._clock() < deadline:  # NaN is no time to wait
                 raise self._busy()
             self._sleep(_POLL_S)
 

@@ -59,7 +59,7 @@ class MemoryTransport(Transport):
     def drain(self) -> bytes:
         """Take the pieces that are due by now."""
         taken = bytearray()
-        while self._coming and self._coming[0][0] <= self._now:
+        while not self._closed and self._coming and self._coming[0][0] <= self._now:
             taken += self._coming.popleft()[1]
         return bytes(taken)
 

@@ -52,7 +52,7 @@ def open_serial(
             port.set_low_latency_mode(True)
         except (ValueError, OSError, NotImplementedError) as error:
             note(f"{target}: the driver has no low latency mode: {error}")
-    if hasattr(port, "fd") and os.name == "posix":
+    if hasattr(port, "fd") and os.name == "posix" and "://" not in target:  # spy:// wants to be asked
         return DeviceTransport(target, line, port)
     return SerialTransport(target, line, port)
 
@@ -74,16 +74,18 @@ def _open(target: str, line: LineSettings) -> Any:
     except (OSError, ValueError, NotImplementedError) as error:  # SerialException is an OSError
         raise _open_error(target, line, error) from error
     except Exception as error:  # a URL handler or termios with an error of its own
-        if type(error).__name__ != "error":
+        if type(error).__name__ != "error" and "://" not in target:
             raise
         raise _open_error(target, line, error) from error
 
 
 def _open_error(target: str, line: LineSettings, error: Exception) -> LineError:
-    number = getattr(error, "errno", None)
-    if number is None and error.args and isinstance(error.args[0], int):
-        number = error.args[0]
-    text = str(error)
+    cause: BaseException = error
+    if type(error.__context__).__name__ == "error":  # of termios: pyserial keeps its number as text only
+        cause = error.__context__ or error
+    number, text = getattr(error, "errno", None), str(error)
+    if number is None and len(cause.args) == 2 and isinstance(cause.args[0], int):
+        number, text = cause.args
     if number in {errno.EBUSY, errno.EAGAIN, errno.EWOULDBLOCK} or "exclusively lock" in text:
         return PortBusy(
             f"{target}: another program has the port open",
@@ -104,7 +106,8 @@ def _open_error(target: str, line: LineSettings, error: Exception) -> LineError:
             f"{target}: cannot be used as a serial port at {line}: {text}",
             hint="check the name, --baud and --format against what the adapter can do",
         )
-    return LineError(f"{target}: cannot open: {text}", hint="'fatektool ports' lists the serial ports here")
+    hint = "check the URL, and that the gateway is on" if "://" in target else "try 'fatektool ports'"
+    return LineError(f"{target}: cannot open: {text}", hint=hint)
 
 
 def _is_pty(target: str) -> bool:
@@ -164,8 +167,11 @@ class SerialTransport(Transport):
 
     def close(self) -> None:
         """Close the port."""
+        connection = getattr(self._port, "_socket", None)  # of a URL; pyserial leaves a broken one open
         with contextlib.suppress(OSError, ValueError):
             self._port.close()
+        if connection is not None:
+            connection.close()
 
 
 class DeviceTransport(Transport):

@@ -9,7 +9,7 @@ from __future__ import annotations
 import contextlib
 import socket
 from abc import abstractmethod
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from fatektool.errors import LineError, TransportClosed, TransportTimeout
 from fatektool.transport.base import DRAIN_LIMIT, WRITE_TIMEOUT_S, Transport
@@ -18,29 +18,39 @@ from fatektool.transport.wait import readable, writable
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-Address = tuple[str, int]
+Address = tuple[str, int] | tuple[str, int, int, int]
+"""IP address and port; of IPv6 also flow and scope, which a link-local address needs."""
 
 
 def resolve(host: str, port: int) -> Address:
-    """The IP address of a host, with the port.
+    """The IP address of a host, with the port; IPv4 first, which is what these PLCs' modules speak.
 
     Raises:
         LineError: the name has none.
     """
     try:
         found = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)
-    except (OSError, UnicodeError) as error:
+    except (OSError, ValueError) as error:  # UnicodeError among them
         reason = getattr(error, "strerror", None) or str(error)
         raise LineError(
             f"{host}: no such host: {reason}", hint="check the name, or give its IP address", host=host
         ) from error
-    address = found[0][4]
-    return str(address[0]), int(address[1])
+    addresses = [place[4] for place in sorted(found, key=lambda place: place[0] != socket.AF_INET)]
+    return cast("Address", addresses[0])
 
 
-def family_of(address: Address) -> socket.AddressFamily:
-    """IPv6 if the address has colons."""
-    return socket.AF_INET6 if ":" in address[0] else socket.AF_INET
+def connected_to(address: Address, kind: socket.SocketKind, timeout_s: float) -> socket.socket:
+    """A socket connected to an address; what goes wrong is raised as the system has it."""
+    connecting = socket.socket(socket.AF_INET6 if ":" in address[0] else socket.AF_INET, kind)
+    try:
+        connecting.settimeout(timeout_s)
+        if kind == socket.SOCK_STREAM:
+            connecting.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        connecting.connect(address)
+    except BaseException:
+        connecting.close()
+        raise
+    return connecting
 
 
 class SocketTransport(Transport):

@@ -19,7 +19,7 @@ from typing import Final
 from fatektool.errors import UsageError
 
 _NET: Final = re.compile(
-    r"(tcp|udp)://(?:\[([0-9A-Fa-f:.%\w]+)\]|([^/:\[\]@?#\s]+))(?::([0-9]+))?/?", re.ASCII
+    r"(tcp|udp)://(?:\[([0-9A-Fa-f:.%\w]+)\]|([^/:\[\]@?#\s]+))(?::([0-9]{1,9}))?/?", re.ASCII
 )
 _SCHEME: Final = re.compile(r"[A-Za-z][A-Za-z0-9+.]*://")
 DEFAULT_PORT: Final = 500
@@ -59,12 +59,12 @@ class Target:
         Raises:
             UsageError: it is none.
         """
+        if not text.strip() or "\0" in text:
+            raise UsageError("the target is empty", hint=_WAYS)
         if text.startswith("sim:"):
             return cls(text, TargetKind.SIM, path=text.removeprefix("sim:"))
         if text.startswith(("tcp:", "udp:")):
             return cls._net(text)
-        if not text.strip() or "\0" in text:
-            raise UsageError("the target is empty", hint=_WAYS)
         return cls(text, TargetKind.SERIAL, path=text)
 
     @classmethod

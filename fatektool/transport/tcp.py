@@ -6,7 +6,7 @@ import socket
 from typing import TYPE_CHECKING
 
 from fatektool.errors import TransportClosed
-from fatektool.transport.sockets import SocketTransport, family_of
+from fatektool.transport.sockets import SocketTransport, connected_to
 
 if TYPE_CHECKING:
     from fatektool.transport.sockets import Address
@@ -29,19 +29,14 @@ class TcpTransport(SocketTransport):
         super().__init__(name, address)
 
     def _connect(self) -> socket.socket:
-        connecting = socket.socket(family_of(self._address), socket.SOCK_STREAM)
         try:
-            connecting.settimeout(self._connect_timeout_s)
-            connecting.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-            connecting.connect(self._address)
+            return connected_to(self._address, socket.SOCK_STREAM, self._connect_timeout_s)
         except OSError as error:
-            connecting.close()
             reason = error.strerror or str(error)
             raise TransportClosed(
                 f"{self.name}: cannot connect to {self._address[0]} port {self._address[1]}: {reason}",
                 hint="check address and port, and that the PLC's Ethernet module or the gateway is on",
             ) from error
-        return connecting
 
     def _receive(self, connected: socket.socket, max_bytes: int) -> bytes:
         data = connected.recv(max_bytes)

@@ -9,7 +9,7 @@ import socket
 from typing import Final
 
 from fatektool.errors import TransportClosed
-from fatektool.transport.sockets import SocketTransport, family_of
+from fatektool.transport.sockets import SocketTransport, connected_to
 
 _DATAGRAM: Final = 65535
 
@@ -18,16 +18,13 @@ class UdpTransport(SocketTransport):
     """A UDP socket that hears only the address it talks to. A datagram is given whole."""
 
     def _connect(self) -> socket.socket:
-        connected = socket.socket(family_of(self._address), socket.SOCK_DGRAM)
         try:
-            connected.connect(self._address)
+            return connected_to(self._address, socket.SOCK_DGRAM, 0)
         except OSError as error:
-            connected.close()
             raise TransportClosed(
                 f"{self.name}: cannot send to {self._address[0]}: {error.strerror or error}",
                 hint="check the address and this computer's network",
             ) from error
-        return connected
 
     def _receive(self, connected: socket.socket, max_bytes: int) -> bytes:
         return connected.recv(max(max_bytes, _DATAGRAM))

@@ -7,10 +7,14 @@ takes sockets of any number.
 from __future__ import annotations
 
 import select
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+
+_LONGEST_S: Final = 86400.0
+"""Waiting less than asked is fine, and poll cannot count the milliseconds of a month."""
 
 
 def readable(descriptor: int) -> Callable[[float], bool]:
@@ -29,13 +33,17 @@ def _waiter(descriptor: int, *, writing: bool) -> Callable[[float], bool]:
         poller.register(descriptor, select.POLLOUT if writing else select.POLLIN)
 
         def wait_poll(timeout_s: float) -> bool:
-            return bool(poller.poll(max(0.0, timeout_s) * 1000))
+            return bool(poller.poll(_bounded(timeout_s) * 1000))
 
         return wait_poll
 
     def wait_select(timeout_s: float) -> bool:
         watched = [descriptor]
-        found = select.select([] if writing else watched, watched if writing else [], [], max(0.0, timeout_s))
+        found = select.select([] if writing else watched, watched if writing else [], [], _bounded(timeout_s))
         return any(found)
 
     return wait_select
+
+
+def _bounded(timeout_s: float) -> float:
+    return min(max(0.0, timeout_s), _LONGEST_S)

@@ -7,6 +7,7 @@ after each change, as a real one would.
 from __future__ import annotations
 
 from contextlib import ExitStack
+from math import inf
 from typing import TYPE_CHECKING
 
 from fatektool.client import Plc
@@ -61,7 +62,7 @@ def connect(
     codec = CODECS.get(protocol)
     if codec is None:
         raise UsageError(f"protocol {protocol!r}: expected one of {', '.join(CODECS)}")
-    if timeout_s <= 0 or retries < 0:
+    if not 0 < timeout_s < inf or retries < 0:
         raise UsageError(f"expected a timeout above 0 and retries from 0, got {timeout_s:g} and {retries}")
     line = LineSettings(baud, format)
     where = Target.parse(target)
@@ -92,16 +93,19 @@ def _open(
         from fatektool.transport.open import open_transport
 
         return open_transport(where, line, stack, lock_wait_s=lock_wait_s, note=note)
+    from os.path import realpath
+    from pathlib import Path
+
     from fatektool.simulator.build import build_simulation
     from fatektool.transport.memory import MemoryTransport
 
-    if where.path:
-        from os.path import realpath
-
+    state = Path(where.path) if where.path else None
+    if state is not None:
         from fatektool.transport.lock import PortLock
 
-        lock = PortLock(realpath(where.path), lock_wait_s)
+        lock = PortLock(realpath(state), lock_wait_s)
         lock.acquire()
         stack.callback(lock.release)
-    simulation = build_simulation(None if where.path else [station], state=where.path or None)
+    kept = state is not None and state.exists()  # the PLCs in a file have stations of their own
+    simulation = build_simulation(None if kept else [station], state=state)
     return stack.enter_context(MemoryTransport(simulation.line(), where.text))

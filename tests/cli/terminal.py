@@ -1,0 +1,74 @@
+"""A command on a real terminal: a pty that is its controlling terminal, so that ^C is a signal."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import re
+import struct
+import subprocess
+import sys
+import termios
+from typing import TYPE_CHECKING
+
+from .house import COMMAND, environment
+
+if TYPE_CHECKING:
+    from types import TracebackType
+    from typing import Self
+
+_TAKE_TERMINAL = (
+    "import fcntl, os, sys, termios; os.setsid(); fcntl.ioctl(2, termios.TIOCSCTTY, 0); "
+    "os.execv(sys.argv[1], sys.argv[1:])"
+)
+_ESCAPE = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
+
+
+class Terminal:
+    """Runs a command with stdin, stdout and stderr on a pty; ``stdout`` may go elsewhere."""
+
+    def __init__(
+        self, *words: object, columns: int = 80, lines: int = 24, stdout: int | None = None, **more: str
+    ) -> None:
+        self.master, slave = os.openpty()
+        fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", lines, columns, 0, 0))
+        self.process = subprocess.Popen(
+            [sys.executable, "-c", _TAKE_TERMINAL, *COMMAND, *map(str, words)],
+            stdin=slave,
+            stdout=slave if stdout is None else stdout,
+            stderr=slave,
+            env=environment(**more),
+        )
+        os.close(slave)
+        self.raw = ""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self.process.poll() is None:
+            self.process.kill()
+        self.process.wait()
+        os.close(self.master)
+
+    @property
+    def text(self) -> str:
+        """What is on it, without escapes."""
+        return _ESCAPE.sub("", self.raw).replace("\r\n", "\n")
+
+    def read_until(self, words: str) -> None:
+        while words not in self.text:
+            self.raw += os.read(self.master, 65536).decode(errors="replace")
+
+    def type(self, keys: str) -> None:
+        os.write(self.master, keys.encode())
+
+    def end(self) -> int:
+        """Read to the end; give the exit code."""
+        with contextlib.suppress(OSError):  # EIO: the other side is closed
+            while data := os.read(self.master, 65536):
+                self.raw += data.decode(errors="replace")
+        return self.process.wait()

@@ -1,0 +1,134 @@
+"""Standard streams: pipes, full disks, closed ones. Data on stdout and nothing else."""
+
+from __future__ import annotations
+
+import os
+import resource
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from fatektool.program.archive import Backup, load_backup
+from fatektool.simulator.build import build_simulation
+
+from .house import COMMAND, OLD, Press, environment, one_line, process, started
+
+
+def test_a_backup_to_stdout_is_the_file(press: Press) -> None:
+    process("backup", "x.json", "-p", press.target)
+    filed = Path("x.json").read_bytes()
+    done = process("backup", "-", "-p", press.target)
+    assert done.code == 0
+    assert done.err == ""
+    created = Backup.parse(filed).created.encode(), Backup.parse(done.out.encode()).created.encode()
+    assert done.out.encode() == filed.replace(created[0], created[1])
+    assert process("backup", "-", "-p", press.target, "--json").out.count("\n") == done.out.count("\n")
+    assert not Path("-").exists()
+
+
+def test_a_backup_through_a_pipe(press: Press) -> None:
+    assert process("backup", "-", "-p", press.target, redirect="> piped.json").code == 0
+    assert load_backup(Path("piped.json")).program == OLD
+
+
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize(
+    "words",
+    ["backup - -p sim:", "status -p sim:", "--help", "status -p sim: --json", "schema"],
+)
+def test_a_reader_that_is_gone(words: str, unbuffered: str) -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    done = subprocess.run(
+        [*COMMAND, *words.split()],
+        stdout=writer,
+        stderr=subprocess.PIPE,
+        check=False,
+        env=environment(PYTHONUNBUFFERED=unbuffered),
+    )
+    os.close(writer)
+    assert (done.returncode, done.stderr) == (2, b"")
+
+
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_a_reader_that_has_seen_enough(
+    press: Press, monkeypatch: pytest.MonkeyPatch, unbuffered: str
+) -> None:
+    """A program of 65535 words does not fit into a pipe: half of it is written."""
+    monkeypatch.setenv("PYTHONUNBUFFERED", unbuffered)
+    build_simulation(ladder_words=65535, state="large")
+    with started("backup", "-", "-p", "sim:large", "--single-pass") as command:
+        assert command.stdout is not None
+        assert command.stderr is not None
+        assert command.stdout.read(10) == '{\n "schema'
+        command.stdout.close()
+        assert command.stderr.read() == ""
+    assert command.returncode == 2
+    assert press.program == OLD
+
+
+FULL = "> /dev/full"
+
+
+@pytest.mark.parametrize("as_json", [False, True], ids=["words", "json"])
+@pytest.mark.parametrize(
+    "command", ["backup -", "status", "inspect old.json", "schema", "verify old.json", "ports"]
+)
+def test_stdout_on_a_full_disk(press: Press, command: str, *, as_json: bool) -> None:
+    port = ["-p", press.target] if command.split(maxsplit=1)[0] in {"backup", "status", "verify"} else []
+    done = process(*command.split(), *port, *(["--json"] if as_json else []), redirect=FULL)
+    if command == "ports" and not as_json and done.code == 0:
+        return  # this computer has none: nothing is printed
+    assert done.code == 5
+    line = one_line(done.err.splitlines()[-1])
+    assert line.startswith("fatektool: standard output cannot be written: No space left on device; make room")
+
+
+@pytest.mark.parametrize("words", [["--help"], ["--version"]])
+def test_help_on_a_full_disk(words: list[str]) -> None:
+    assert process(*words, redirect=FULL).code == 5
+
+
+def test_an_error_keeps_its_exit_code_wherever_its_words_go(press: Press) -> None:
+    for redirect in (FULL, "2> /dev/full", ">&-", "2>&-", "> /dev/full 2>&1", ">&- 2>&- <&-"):
+        for option in ([], ["--json"]):
+            done = process("restore", press.new, "-p", press.target, *option, redirect=redirect)
+            assert done.code == 2, redirect
+            assert "Traceback" not in done.err
+            assert process("status", "-p", "/dev/nope", *option, redirect=redirect).code == 3, redirect
+
+
+def test_closed_streams_stop_no_command(press: Press) -> None:
+    for number, redirect in enumerate((">&-", "2>&-", "<&-", ">&- 2>&- <&-", "2> /dev/full")):
+        assert process("backup", f"{number}.json", "-p", press.target, redirect=redirect).code == 0
+        assert load_backup(Path(f"{number}.json")).program == OLD
+
+
+def test_a_restore_goes_on_when_nobody_hears_it(press: Press) -> None:
+    for redirect in ("2> /dev/full", "2>&-"):
+        for file in (press.new, press.old):
+            done = process("restore", file, "-p", press.target, "--yes", "-v", redirect=redirect)
+            assert done.code == 0
+            assert press.program == load_backup(file).program
+
+
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_a_disk_that_is_full_half_way(press: Press, unbuffered: str) -> None:
+    """The first 8 kB fit: half a backup must not pass for a whole one."""
+    limit = f"import resource; resource.setrlimit({resource.RLIMIT_FSIZE}, (8192, 8192))"
+    limited = f"{limit}; from fatektool.cli import main; main()"
+    command = [sys.executable, "-c", limited, "backup", "-", "-p", "sim:", "--single-pass"]
+    with Path("out").open("wb") as out:
+        done = subprocess.run(
+            command,
+            stdout=out,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+            env=environment(PYTHONUNBUFFERED=unbuffered),
+        )
+    assert done.returncode == 5
+    assert one_line(done.stderr).startswith("fatektool: standard output cannot be written: File too large")
+    assert press.program == OLD

@@ -1,0 +1,1 @@
+"""Tests of backup, verify and restore over a line in the same process."""

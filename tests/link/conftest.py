@@ -1,0 +1,17 @@
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@pytest.fixture(autouse=True)
+def lock_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder for lock files of this test alone."""
+    folder = tmp_path / "locks"
+    folder.mkdir()
+    monkeypatch.setenv("FATEKTOOL_LOCK_DIR", str(folder))
+    return folder

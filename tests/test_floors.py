@@ -1,0 +1,183 @@
+"""The house keeps its floors: imports point down, nothing below the command line prints, a start is cheap."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import pytest
+
+import fatektool
+from fatektool.cli.app import ENTRIES
+from fatektool.simulator.build import build_simulation
+from fatektool.simulator.servers import Server, running
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+ROOT = Path(fatektool.__file__).parent
+
+FLOORS = {
+    "errors": 0,
+    "version": 0,
+    "silence": 2,
+    "protocol": 1,
+    "program": 1,
+    "simulator": 1,
+    "transport": 2,
+    "planner": 3,
+    "link": 3,
+    "batch": 3,
+    "client": 3,
+    "connection": 4,
+    "jobs": 5,
+    "history": 5,
+    "inventory": 5,
+    "report": 5,
+    "cli": 6,
+    "__init__": 6,
+    "__main__": 7,
+}
+"""A room may import from lower floors and from itself; link, batch and client share a floor and a job."""
+
+SHARED = {"link", "batch", "client", "planner"}
+TO_THE_SIMULATOR = {"simulator", "connection", "cli"}
+PRINTERS = {"click", "rich", "logging"}
+
+
+class Import(NamedTuple):
+    """A module of this package, and a module that it imports somewhere in its code."""
+
+    by: str
+    name: str
+
+    @property
+    def room(self) -> str:
+        return room_of(self.by)
+
+
+def room_of(module: str) -> str:
+    parts = module.split(".")
+    return parts[1] if len(parts) > 1 else "__init__"
+
+
+def trees() -> Iterator[tuple[str, ast.Module]]:
+    for path in sorted(ROOT.rglob("*.py")):
+        parts = path.relative_to(ROOT.parent).with_suffix("").parts
+        name = ".".join(parts[:-1] if parts[-1] == "__init__" and len(parts) > 2 else parts)
+        yield name, ast.parse(path.read_text(encoding="utf-8"), str(path))
+
+
+def imports() -> Iterator[Import]:
+    for module, tree in trees():
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Import):
+                yield from (Import(module, alias.name) for alias in node.names)
+            elif isinstance(node, ast.ImportFrom):
+                assert node.level == 0, f"{module}: a relative import"
+                assert node.module
+                yield Import(module, node.module)
+                if node.module == "fatektool":
+                    yield from (Import(module, f"fatektool.{alias.name}") for alias in node.names)
+
+
+IMPORTS = list(imports())
+OURS = [found for found in IMPORTS if found.name.startswith("fatektool.")]
+
+
+def test_every_room_has_its_floor() -> None:
+    assert {room_of(module) for module, _ in trees()} <= FLOORS.keys()
+    assert len(OURS) > 100
+
+
+@pytest.mark.parametrize("room", sorted({found.room for found in OURS}))
+def test_imports_point_down(room: str) -> None:
+    for found in OURS:
+        other = room_of(found.name)
+        if found.room != room or other == room or {room, other} <= SHARED or other == "version":
+            continue
+        assert FLOORS[other] < FLOORS[room], f"{found.by} imports {found.name}"
+
+
+def test_the_simulator_shares_no_code_with_the_client() -> None:
+    for found in OURS:
+        if room_of(found.name) == "simulator":
+            assert found.room in TO_THE_SIMULATOR, f"{found.by} imports {found.name}"
+        if found.room == "simulator":
+            assert room_of(found.name) in {"simulator", "errors"}, f"{found.by} imports {found.name}"
+
+
+def test_only_the_command_line_prints() -> None:
+    for found in IMPORTS:
+        if found.name.partition(".")[0] in PRINTERS:
+            assert found.room == "cli", f"{found.by} imports {found.name}"
+    for module, tree in trees():
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Name) and node.id in {"print", "input"}:
+                pytest.fail(f"{module}, line {node.lineno}: {node.id}")
+
+
+def test_the_rooms_below_the_lines_do_no_input_or_output() -> None:
+    """Protocol has no I/O, no clock, no threads; program touches files in one place."""
+    forbidden = {"socket", "serial", "threading", "asyncio", "subprocess", "select", "time", "selectors"}
+    for found in IMPORTS:
+        if found.room in {"protocol", "program"}:
+            assert found.name.partition(".")[0] not in forbidden, f"{found.by} imports {found.name}"
+        if found.name.partition(".")[0] in {"os", "pathlib", "tempfile"} and found.room == "program":
+            assert found.by in {"fatektool.program.files", "fatektool.program.archive"}, found
+
+
+# --- what a start loads -----------------------------------------------------------------------------------
+
+LOADED = "import sys; {action}; print(*sys.modules, file=sys.stderr)"
+
+
+def loaded(action: str) -> set[str]:
+    """The modules that are loaded, by their first names, when this was done in a fresh process."""
+    program = LOADED.format(action=action)
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    return {module.partition(".")[0] for module in done.stderr.split()}
+
+
+def command(*words: str) -> str:
+    return f"from fatektool.cli import run; code = run({list(words)}); assert code == 0, code"
+
+
+NEVER = {"rich", "asyncio", "pymodbus", "dulwich", "git", "tomllib", "serial", "jsonschema"}
+
+
+def test_importing_the_library_loads_no_other() -> None:
+    assert not loaded("import fatektool; fatektool.__version__") & {"click", "rich", "serial"}
+    every = loaded("import fatektool; [getattr(fatektool, name) for name in fatektool.__all__]")
+    assert not every & {"click", *NEVER}
+
+
+def test_version_loads_next_to_nothing() -> None:
+    found = loaded(command("--version"))
+    assert "click" in found
+    assert not found & NEVER
+
+
+def test_status_over_tcp_loads_what_it_needs() -> None:
+    server = Server(build_simulation(ladder_words=400))
+    door = server.open_tcp()
+    with running(server):
+        assert not loaded(command("status", "-p", door.address)) & NEVER
+
+
+def test_a_command_does_not_load_the_simulator_unless_it_is_one() -> None:
+    server = Server(build_simulation(ladder_words=400))
+    door = server.open_tcp()
+    program = LOADED.format(action=command("status", "-p", door.address))
+    with running(server):
+        done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert "fatektool.simulator" not in done.stderr.split()
+
+
+@pytest.mark.parametrize("name", ENTRIES)
+def test_every_command_is_in_the_readme(name: str) -> None:
+    readme = (ROOT.parent / "README.md").read_text(encoding="utf-8")
+    assert f"`{name}" in readme or f"fatektool {name}" in readme

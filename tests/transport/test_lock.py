@@ -1,0 +1,304 @@
+"""One process a line: real processes, and one clock that is not."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import subprocess
+import sys
+import tempfile
+from typing import TYPE_CHECKING
+
+import pytest
+
+from fatektool.errors import PortBusy, UsageError
+from fatektool.transport import lock as lock_module
+from fatektool.transport.lock import PortLock
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+posix = pytest.mark.skipif(os.name != "posix", reason="POSIX files and users")
+as_root = hasattr(os, "geteuid") and os.geteuid() == 0
+RESOURCE = "/dev/ttyUSB0"
+HOLDER = """
+import sys
+from fatektool.transport.lock import PortLock
+lock = PortLock(sys.argv[1], 0)
+lock.acquire()
+print("locked", flush=True)
+sys.stdin.readline()
+lock.release()
+print("released", flush=True)
+sys.stdin.readline()
+"""
+
+
+@contextlib.contextmanager
+def holding(resource: str = RESOURCE) -> Iterator[subprocess.Popen[str]]:
+    """Another process that holds the lock; a line to it makes it let go, another ends it."""
+    with subprocess.Popen(
+        [sys.executable, "-c", HOLDER, resource], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as process:
+        try:
+            assert process.stdout is not None
+            assert process.stdout.readline() == "locked\n"
+            yield process
+        finally:
+            process.kill()
+
+
+def let_go(process: subprocess.Popen[str]) -> None:
+    assert process.stdin is not None
+    assert process.stdout is not None
+    process.stdin.write("\n")
+    process.stdin.flush()
+    assert process.stdout.readline() == "released\n"
+
+
+class Clock:
+    """A clock that moves when somebody sleeps."""
+
+    def __init__(self) -> None:
+        self.now = 100.0
+        self.slept: list[float] = []
+
+    def __call__(self) -> float:
+        return self.now
+
+    def sleep(self, seconds: float) -> None:
+        self.slept.append(seconds)
+        self.now += seconds
+
+
+def held_by_nobody(resource: str = RESOURCE) -> bool:
+    lock = PortLock(resource, 0)
+    try:
+        lock.acquire()
+    except PortBusy:
+        return False
+    lock.release()
+    return True
+
+
+def test_another_process_is_named() -> None:
+    clock = Clock()
+    with holding() as process:
+        lock = PortLock(RESOURCE, 2.0, clock=clock, sleep=clock.sleep)
+        with pytest.raises(PortBusy) as caught:
+            lock.acquire()
+        error = caught.value
+        assert error.message == f"{RESOURCE} is in use by process {process.pid}: waited 2 s"
+        assert "--lock-wait" in str(error.hint)
+        assert error.details == {"holder": process.pid, "resource": RESOURCE}
+        assert error.exit_code == 3
+    assert 102.0 <= clock.now < 102.1
+    assert max(clock.slept) <= 0.1
+
+
+def test_another_process_is_waited_for() -> None:
+    clock = Clock()
+    with holding() as process:
+
+        def sleep(seconds: float) -> None:
+            clock.sleep(seconds)
+            if len(clock.slept) == 3:
+                let_go(process)
+
+        lock = PortLock(RESOURCE, 10.0, clock=clock, sleep=sleep)
+        lock.acquire()
+        assert len(clock.slept) == 3
+        assert lock.holder() == os.getpid()
+        lock.release()
+
+
+@pytest.mark.parametrize("wait_s", [0.0, -1.0, float("nan")])
+def test_no_wait_is_no_wait(wait_s: float) -> None:
+    clock = Clock()
+    with holding(), pytest.raises(PortBusy):
+        PortLock(RESOURCE, wait_s, clock=clock, sleep=clock.sleep).acquire()
+    assert clock.slept == []
+
+
+def test_a_lock_dies_with_its_process() -> None:
+    with holding() as process:
+        assert not held_by_nobody()
+        process.kill()
+        process.wait()
+        lock = PortLock(RESOURCE, 0)
+        assert lock.holder() == process.pid  # the file is still there, and means nothing
+        lock.acquire()
+        assert lock.holder() == os.getpid()
+        lock.release()
+
+
+def test_a_released_lock_is_anybodys() -> None:
+    with holding() as process:
+        let_go(process)
+        assert held_by_nobody()
+
+
+@pytest.mark.parametrize(
+    "content", [b"", b"1\n", b"999999999\n", b"not a number", b"\xff\x00", b"7" * 10000, b"-4\n"]
+)
+def test_what_a_file_left_behind_says_means_nothing(content: bytes) -> None:
+    lock = PortLock(RESOURCE, 0)
+    lock.path.write_bytes(content)
+    lock.acquire()
+    assert lock.holder() == os.getpid()
+    lock.release()
+
+
+def test_a_holder_that_cannot_be_named() -> None:
+    with holding():
+        lock = PortLock(RESOURCE, 0)
+        lock.path.write_bytes(b"?")
+        with pytest.raises(PortBusy, match="in use by another process") as caught:
+            lock.acquire()
+        assert caught.value.details["holder"] is None
+
+
+def test_one_resource_one_lock_in_one_process_too() -> None:
+    first = PortLock(RESOURCE, 0)
+    first.acquire()
+    with pytest.raises(PortBusy, match=f"in use by process {os.getpid()}"):
+        PortLock(RESOURCE, 0).acquire()
+    with pytest.raises(PortBusy):
+        first.acquire()
+    other = PortLock(RESOURCE + "0", 0)
+    other.acquire()
+    other.release()
+    first.release()
+    first.release()
+    assert held_by_nobody()
+
+
+def test_a_failed_try_takes_nothing_from_the_holder() -> None:
+    first, second = PortLock(RESOURCE, 0), PortLock(RESOURCE, 0)
+    first.acquire()
+    with pytest.raises(PortBusy):
+        second.acquire()
+    second.release()
+    assert not held_by_nobody()
+    assert first.holder() == os.getpid()
+    first.release()
+
+
+@pytest.mark.parametrize(
+    "resource",
+    [
+        "127.0.0.1:500",
+        "[fe80::1]:500",
+        "RFC2217://GATEWAY:1/?X=Y",
+        "/dev/" + "x" * 5000,
+        "/dev/\udcff",
+        "ä/..",
+        "",
+    ],
+)
+def test_any_resource_has_a_file_name(resource: str, lock_folder: Path) -> None:
+    lock = PortLock(resource, 0)
+    lock.acquire()
+    assert [found.name for found in lock_folder.iterdir()] == [lock.path.name]
+    lock.release()
+
+
+def test_resources_that_read_alike_have_two_locks() -> None:
+    assert PortLock("/dev/a-b", 0).path != PortLock("/dev/a/b", 0).path
+
+
+@posix
+def test_the_file_is_for_all_users_to_lock() -> None:
+    mask = os.umask(0o077)
+    try:
+        lock = PortLock(RESOURCE, 0)
+        lock.acquire()
+        assert lock.path.stat().st_mode & 0o777 == 0o666
+        lock.release()
+    finally:
+        os.umask(mask)
+
+
+@posix
+def test_a_file_that_may_only_be_read_can_be_locked(monkeypatch: pytest.MonkeyPatch) -> None:
+    lock = PortLock(RESOURCE, 0)
+    lock.path.write_text("4711\n")
+    lock.path.chmod(0o444)
+    if as_root:  # whom no mode keeps out
+        monkeypatch.setattr(os, "open", as_another_user(os.open))
+    lock.acquire()
+    assert not held_by_nobody()
+    assert lock.path.read_text() == "4711\n"
+    lock.release()
+    assert held_by_nobody()
+
+
+def as_another_user(really_open: object) -> object:
+    def open_to_read(path: str, flags: int, *mode: int) -> int:
+        if flags & (os.O_RDWR | os.O_WRONLY) and not flags & os.O_CREAT:
+            raise PermissionError(13, "Permission denied")
+        return int(really_open(path, flags, *mode))  # type: ignore[operator]
+
+    return open_to_read
+
+
+@posix
+@pytest.mark.parametrize("place", ["nowhere", "file", "nowhere/deep"])
+def test_a_folder_that_cannot_be_used_is_one_clear_line(
+    place: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("FATEKTOOL_LOCK_DIR", str(tmp_path / place))
+    lock = PortLock(RESOURCE, 0)
+    with pytest.raises(UsageError, match="cannot make the lock file") as caught:
+        lock.acquire()
+    assert str(lock.path) in caught.value.message
+    assert "FATEKTOOL_LOCK_DIR" in str(caught.value.hint)
+    assert "\n" not in str(caught.value)
+    lock.release()
+
+
+@posix
+@pytest.mark.skipif(as_root, reason="root may write everywhere")
+def test_a_folder_without_the_right_to_write(lock_folder: Path) -> None:
+    lock_folder.chmod(0o555)
+    with pytest.raises(UsageError, match="Permission denied"):
+        PortLock(RESOURCE, 0).acquire()
+
+
+@posix
+@pytest.mark.parametrize("trap", ["dangling", "file", "folder"])
+def test_a_trap_in_a_shared_folder_is_not_stepped_into(trap: str, tmp_path: Path) -> None:
+    lock = PortLock(RESOURCE, 0)
+    victim = tmp_path / "victim"
+    if trap == "folder":
+        lock.path.mkdir()
+    else:
+        lock.path.symlink_to(victim)
+        if trap == "file":
+            victim.write_text("precious")
+    with pytest.raises(UsageError, match="cannot make the lock file"):
+        lock.acquire()
+    assert not victim.exists() or victim.read_text() == "precious"
+
+
+@posix
+def test_a_child_process_does_not_inherit_the_lock() -> None:
+    lock = PortLock(RESOURCE, 0)
+    lock.acquire()
+    with subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE) as child:
+        lock.release()
+        assert held_by_nobody()
+        child.kill()
+
+
+def test_where_locks_lie(lock_folder: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    folder = lock_module.lock_folder
+    assert folder() == lock_folder
+    monkeypatch.setenv("FATEKTOOL_LOCK_DIR", "")
+    monkeypatch.setattr(lock_module, "_SHARED", (str(tmp_path / "nowhere"), str(tmp_path)))
+    assert folder() == tmp_path
+    monkeypatch.setattr(lock_module, "_SHARED", ())
+    monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path / "temporary"))
+    assert folder() == tmp_path / "temporary"
