@@ -16,6 +16,7 @@ lost right behind it, which leaves no trace: a second pass is what finds that.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 if TYPE_CHECKING:
@@ -43,11 +44,21 @@ def ask_all(
     """
     batch = _Batch(link, requests)
     for place in range(len(requests)):
-        batch.ask(place)
-        if on_answer is not None:
-            on_answer(place + 1)
+        batch.ask(place, partial(_meanwhile, link, requests, place, on_answer))
     batch.close()
+    if on_answer is not None:
+        on_answer(len(requests))
     return batch.answers
+
+
+def _meanwhile(
+    link: Link, requests: Sequence[Request[A]], place: int, on_answer: Callable[[int], None] | None
+) -> None:
+    """While the PLC is at work: tell of the answers so far, and have the next request ready."""
+    if on_answer is not None and place:
+        on_answer(place)
+    if place + 1 < len(requests):
+        link.encode_ahead(requests[place + 1])
 
 
 class _Batch(Generic[A]):
@@ -55,17 +66,26 @@ class _Batch(Generic[A]):
         self._link = link
         self._requests = requests
         self._unproven: list[int] = []  # read since the last fence
+        self._signs = link.signs
         self.answers: list[A] = []
 
-    def ask(self, place: int) -> None:
+    def ask(self, place: int, meanwhile: Callable[[], None]) -> None:
         link = self._link
-        suspicions, trouble, fences = link.suspicions, link.counters.trouble, link.counters.fences
-        self.answers.append(link.ask(self._requests[place]))
-        fenced = link.counters.fences != fences
-        if link.suspicions == suspicions and (fenced or link.counters.trouble != trouble):
+        self.answers.append(link.ask(self._requests[place], meanwhile))
+        if link.signs != self._signs:
+            self._look_into_it(place)
+            self._signs = link.signs
+        else:
+            self._unproven.append(place)
+
+    def _look_into_it(self, place: int) -> None:
+        """Something was out of order before or in the exchange of this place."""
+        suspicions, _, fences = self._signs
+        if self._link.suspicions == suspicions:
+            fenced = self._link.counters.fences != fences
             self._check_unproven([] if fenced else [place])
         self._unproven.append(place)
-        if link.suspicions != suspicions:
+        if self._link.suspicions != suspicions:
             self._ask_unproven_again()
 
     def close(self) -> None:

@@ -23,9 +23,9 @@ answers are seen to come late gets twice that time, up to four times; one that i
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
+from fatektool.counters import Counters
 from fatektool.errors import (
     FrameError,
     LineError,
@@ -53,25 +53,6 @@ A = TypeVar("A")
 _READ_BYTES = 4096
 _SILENT_TRIES_BEFORE_RENEWAL = 2
 _MOST_PATIENCE = 4
-
-
-@dataclass(slots=True)
-class Counters:
-    """What was seen on the line so far."""
-
-    exchanges: int = 0
-    timeouts: int = 0
-    checksum_errors: int = 0
-    garbled: int = 0
-    strays: int = 0
-    echoes: int = 0
-    fences: int = 0
-    bytes_heard: int = 0
-
-    @property
-    def trouble(self) -> int:
-        """How often something went wrong; 0 on a clean line."""
-        return self.timeouts + self.checksum_errors + self.garbled + self.strays
 
 
 class Link:
@@ -113,6 +94,7 @@ class Link:
         self.suspicions = 0
         self.byte_time_s = line.byte_time_s
         self._decoder = codec.decoder()
+        self._ahead: tuple[Request[Any] | None, bytes] = (None, b"")
         self._nonces = nonces
         self._note = note
         self._doubt = False
@@ -125,8 +107,12 @@ class Link:
 
     # --- what others call -------------------------------------------------------------------------
 
-    def ask(self, request: Request[A]) -> A:
+    def ask(self, request: Request[A], meanwhile: Callable[[], None] | None = None) -> A:
         """Send a request and give its answer, with retries.
+
+        Args:
+            request: what is asked.
+            meanwhile: what there is to do while the PLC is at work; at every try.
 
         Raises:
             NoAnswer: no try found an answer to trust.
@@ -145,12 +131,22 @@ class Link:
             try:
                 if self._echoes is None and self.codec.echo_may_pass(request):
                     self._learn_echo()
-                return self._exchange(request)
+                return self._exchange(request, meanwhile)
             except (TransportError, FrameError) as error:
                 failure = error
             if request.writes and self._took(request):
                 return None  # type: ignore[return-value]  # a write's answer is None
         raise self._silence(request, failure, alive=self.counters.fences > fences)
+
+    def encode_ahead(self, request: Request[A]) -> None:
+        """Have the next request ready, so that it goes out as soon as the answer before it is in."""
+        self._ahead = (request, self.codec.encode(self.station, request))
+
+    @property
+    def signs(self) -> tuple[int, int, int]:
+        """Suspicions, trouble and fences so far: the same twice means that nothing was out of order."""
+        counters = self.counters
+        return self.suspicions, counters.trouble, counters.fences
 
     def fence(self) -> None:
         """Make sure that no answer to an earlier request can come any more.
@@ -209,19 +205,22 @@ class Link:
             self._heard = self._heard or "more than one answer"
             raise FrameError("something beside the answer: it may have been an echo or not")
 
-    def _exchange(self, request: Request[A]) -> A:
+    def _exchange(self, request: Request[A], meanwhile: Callable[[], None] | None = None) -> A:
         """Send a request once and wait for its answer.
 
         Raises:
             TransportTimeout, TransportClosed, FrameError: this try has failed, and left a doubt.
             PlcRefused: the answer is an error code.
         """
-        raw = self.codec.encode(self.station, request)
-        size = self.codec.answer_bytes(request)
+        ahead = self._ahead
+        raw = ahead[1] if ahead[0] is request else self.codec.encode(self.station, request)
         self._heard = ""
         self.counters.exchanges += 1
         try:
             self.transport.write(raw)
+            if meanwhile is not None:
+                meanwhile()
+            size = self.codec.answer_bytes(request)
             deadline = self.transport.clock() + (len(raw) + size) * self.byte_time_s
             return self._await(request, raw, size, deadline + self.timeout_s * self._patience)
         except TransportTimeout:

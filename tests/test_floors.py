@@ -23,6 +23,7 @@ ROOT = Path(fatektool.__file__).parent
 FLOORS = {
     "errors": 0,
     "version": 0,
+    "counters": 1,
     "silence": 2,
     "protocol": 1,
     "program": 1,

@@ -127,12 +127,13 @@ class SocketTransport(Transport):
 
     def drain(self) -> bytes:
         """Take what was received already."""
-        taken = bytearray()
         connected = self._socket
-        if connected is not None:
-            with contextlib.suppress(OSError, TransportClosed):
-                while len(taken) < DRAIN_LIMIT:
-                    taken += self._receive(connected, 4096)
+        if connected is None or not self._readable(0.0):  # as good as always
+            return b""
+        taken = bytearray()
+        with contextlib.suppress(OSError, TransportClosed):
+            while len(taken) < DRAIN_LIMIT:
+                taken += self._receive(connected, 4096)
         return bytes(taken)
 
     def renew(self) -> None:

@@ -1,0 +1,24 @@
+"""What was seen on a line so far, counted."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(slots=True)
+class Counters:
+    """What was seen on the line so far."""
+
+    exchanges: int = 0
+    timeouts: int = 0
+    checksum_errors: int = 0
+    garbled: int = 0
+    strays: int = 0
+    echoes: int = 0
+    fences: int = 0
+    bytes_heard: int = 0
+
+    @property
+    def trouble(self) -> int:
+        """How often something went wrong; 0 on a clean line."""
+        return self.timeouts + self.checksum_errors + self.garbled + self.strays
