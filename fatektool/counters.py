@@ -22,3 +22,10 @@ class Counters:
     def trouble(self) -> int:
         """How often something went wrong; 0 on a clean line."""
         return self.timeouts + self.checksum_errors + self.garbled + self.strays
+
+    def __str__(self) -> str:
+        return (
+            f"{self.exchanges} exchanges, {self.bytes_heard} bytes heard, {self.timeouts} time-outs, "
+            f"{self.checksum_errors} wrong checksums, {self.garbled} times noise, "
+            f"{self.strays} stray answers, {self.echoes} echoes, {self.fences} fences"
+        )

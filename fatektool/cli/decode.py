@@ -44,23 +44,31 @@ def decode_command(
 
     They are given as HEX, or come from a trace FILE (.ndjson, .pcap).
     """
-    explainer = FaconExplainer()
     found: list[tuple[TraceRecord | None, Explanation]] = []
-    for record in _records(frames):
-        known = _ROLES.get(role or "", Role.EITHER) if record.time == "" else _direction(record)
-        kept = None if record.time == "" else record
-        found += [(kept, explanation) for explanation in explainer.explain(record.data, known)]
+    try:
+        for pair in _explained(frames, _ROLES.get(role or "", Role.EITHER)):
+            found.append(pair)  # noqa: PERF402  # so that what came before an error is kept
+    except DataError:
+        if found and not voice.json:  # what stands before the damage is worth a look
+            voice.show({}, _lines(found))
+        raise
     if not any(explanation.command is not None for _, explanation in found):
-        raise DataError(
-            "no frame in it: expected bytes from STX (02) to ETX (03)",
-            hint="for another protocol name it with --protocol",
-        )
+        raise DataError("no frame in it: expected bytes from STX (02) to ETX (03)")
     document = {
         "schema": "fatektool.decode/1",
         "protocol": protocol,
         "frames": [_document(record, explanation) for record, explanation in found],
     }
     voice.show(document, _lines(found))
+
+
+def _explained(frames: tuple[str, ...], role: Role) -> Iterator[tuple[TraceRecord | None, Explanation]]:
+    explainer = FaconExplainer()
+    for record in _records(frames):
+        typed = record.time == ""
+        known = role if typed else _direction(record)
+        for explanation in explainer.explain(record.data, known):
+            yield (None if typed else record), explanation
 
 
 def _records(frames: tuple[str, ...]) -> Iterator[TraceRecord]:
