@@ -1,4 +1,4 @@
-"""What TCP and UDP share: a connected, non-blocking socket, its errors in the project's words.
+"""What TCP and UDP share: a connected socket, its errors in the project's words.
 
 A connection that broke is made anew at the next ``write``: mixed Ethernet modules stop answering now and
 then, and a reconnect mends it.
@@ -9,7 +9,8 @@ from __future__ import annotations
 import contextlib
 import socket
 from abc import abstractmethod
-from typing import TYPE_CHECKING, cast
+from math import ceil
+from typing import TYPE_CHECKING, Final, cast
 
 from fatektool.errors import LineError, TransportClosed, TransportTimeout
 from fatektool.transport.base import DRAIN_LIMIT, WRITE_TIMEOUT_S, Transport
@@ -17,6 +18,10 @@ from fatektool.transport.wait import readable, writable
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+_TIMEOUT_STEP_S: Final = 0.005
+_LONGEST_WAIT_S: Final = 86400.0
+"""Waiting less than asked is fine, and no system counts the milliseconds of a month."""
 
 Address = tuple[str, int] | tuple[str, int, int, int]
 """IP address and port; of IPv6 also flow and scope, which a link-local address needs."""
@@ -79,6 +84,7 @@ class SocketTransport(Transport):
 
     def _use(self, connected: socket.socket) -> socket.socket:
         connected.settimeout(0)
+        self._timeout_s = 0.0
         self._socket = connected
         self._readable = readable(connected.fileno())
         self._writable = writable(connected.fileno())
@@ -96,12 +102,14 @@ class SocketTransport(Transport):
         connected = self._socket
         if connected is None:
             raise TransportClosed(f"{self.name}: the connection is closed")
+        wait_s = ceil(min(timeout_s, _LONGEST_WAIT_S) / _TIMEOUT_STEP_S) * _TIMEOUT_STEP_S
         try:
-            if not self._readable(timeout_s):
-                raise TransportTimeout(f"{self.name}: nothing came within {timeout_s:.3f} s")
+            if wait_s != self._timeout_s:  # rounded, so that it seldom changes: each change is a system call
+                connected.settimeout(max(0.0, wait_s))
+                self._timeout_s = wait_s
             data = self._receive(connected, max_bytes)
-        except BlockingIOError:
-            data = b""
+        except (TimeoutError, BlockingIOError):
+            raise TransportTimeout(f"{self.name}: nothing came within {timeout_s:.3f} s") from None
         except OSError as error:
             raise self._broken(error) from error
         if not data:  # a datagram with a wrong checksum, or an empty one
@@ -116,7 +124,7 @@ class SocketTransport(Transport):
             while rest:
                 try:
                     rest = rest[connected.send(rest) :]
-                except BlockingIOError:
+                except (TimeoutError, BlockingIOError):
                     if not self._writable(WRITE_TIMEOUT_S):
                         self.close()
                         raise TransportTimeout(
@@ -132,7 +140,7 @@ class SocketTransport(Transport):
             return b""
         taken = bytearray()
         with contextlib.suppress(OSError, TransportClosed):
-            while len(taken) < DRAIN_LIMIT:
+            while len(taken) < DRAIN_LIMIT and self._readable(0.0):
                 taken += self._receive(connected, 4096)
         return bytes(taken)
 
