@@ -16,8 +16,9 @@ lost right behind it, which leaves no trace: a second pass is what finds that.
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING, Generic, TypeVar
+
+from fatektool.stream import ask_in_stream
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -42,41 +43,43 @@ def ask_all(
         NoAnswer: one of them found no answer to trust.
         PlcRefused: one of them was refused.
     """
-    batch = _Batch(link, requests)
-    for place in range(len(requests)):
-        batch.ask(place, partial(_meanwhile, link, requests, place, on_answer))
-    batch.close()
-    if on_answer is not None:
-        on_answer(len(requests))
+    batch = _Batch(link, requests, on_answer)
+    while len(batch.answers) < len(requests):
+        if len(batch.answers) + 1 < len(requests):
+            ask_in_stream(link, requests, len(batch.answers), batch.take)
+        if len(batch.answers) < len(requests):
+            batch.ask()
+    if len(requests) > 1:
+        batch.close()
     return batch.answers
 
 
-def _meanwhile(
-    link: Link, requests: Sequence[Request[A]], place: int, on_answer: Callable[[int], None] | None
-) -> None:
-    """While the PLC is at work: tell of the answers so far, and have the next request ready."""
-    if on_answer is not None and place:
-        on_answer(place)
-    if place + 1 < len(requests):
-        link.encode_ahead(requests[place + 1])
-
-
 class _Batch(Generic[A]):
-    def __init__(self, link: Link, requests: Sequence[Request[A]]) -> None:
+    def __init__(
+        self, link: Link, requests: Sequence[Request[A]], on_answer: Callable[[int], None] | None
+    ) -> None:
         self._link = link
         self._requests = requests
+        self._on_answer = on_answer
         self._unproven: list[int] = []  # read since the last fence
         self._signs = link.signs
         self.answers: list[A] = []
 
-    def ask(self, place: int, meanwhile: Callable[[], None]) -> None:
-        link = self._link
-        self.answers.append(link.ask(self._requests[place], meanwhile))
-        if link.signs != self._signs:
+    def take(self, answer: A) -> None:
+        """An answer that came while all was in order."""
+        self._unproven.append(len(self.answers))
+        self.answers.append(answer)
+        if self._on_answer is not None:
+            self._on_answer(len(self.answers))
+
+    def ask(self) -> None:
+        """Ask the next one with all care."""
+        place = len(self.answers)
+        self.take(self._link.ask(self._requests[place]))
+        if self._link.signs != self._signs:
+            self._unproven.pop()
             self._look_into_it(place)
-            self._signs = link.signs
-        else:
-            self._unproven.append(place)
+            self._signs = self._link.signs
 
     def _look_into_it(self, place: int) -> None:
         """Something was out of order before or in the exchange of this place."""
@@ -89,8 +92,9 @@ class _Batch(Generic[A]):
             self._ask_unproven_again()
 
     def close(self) -> None:
+        """Prove what is not proven yet."""
         link = self._link
-        suspicions, trouble = link.suspicions, link.counters.trouble
+        suspicions, trouble, _ = self._signs
         proven = link.closing_fence()
         if link.suspicions != suspicions:
             self._ask_unproven_again()

@@ -23,9 +23,8 @@ answers are seen to come late gets twice that time, up to four times; one that i
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
-from fatektool.counters import Counters
 from fatektool.errors import (
     FrameError,
     LineError,
@@ -36,6 +35,7 @@ from fatektool.errors import (
     TransportTimeout,
     UsageError,
 )
+from fatektool.hearing import Hearing
 from fatektool.protocol.commands import Command, Loopback, ReadBriefStatus
 from fatektool.protocol.read_back import read_back
 from fatektool.silence import no_answer
@@ -52,7 +52,6 @@ A = TypeVar("A")
 
 _READ_BYTES = 4096
 _SILENT_TRIES_BEFORE_RENEWAL = 2
-_MOST_PATIENCE = 4
 
 
 class Link:
@@ -90,29 +89,19 @@ class Link:
         self.station = station
         self.timeout_s = timeout_s
         self.retries = retries
-        self.counters = Counters()
-        self.suspicions = 0
+        self.hearing = Hearing(transport, codec.decoder(), station)
+        self.counters = self.hearing.counters
         self.byte_time_s = line.byte_time_s
-        self._decoder = codec.decoder()
-        self._ahead: tuple[Request[Any] | None, bytes] = (None, b"")
         self._nonces = nonces
         self._note = note
-        self._doubt = False
-        self._echoes: bool | None = None
-        self._owed = 0  # requests without an answer since the last fence: as many may still come
+        self.echoes: bool | None = None
         self._silent_tries = 0
-        self._patience = 1
-        self._answered: set[int] = set()
-        self._heard = ""
+        self.answered: set[int] = set()  # commands
 
     # --- what others call -------------------------------------------------------------------------
 
-    def ask(self, request: Request[A], meanwhile: Callable[[], None] | None = None) -> A:
+    def ask(self, request: Request[A]) -> A:
         """Send a request and give its answer, with retries.
-
-        Args:
-            request: what is asked.
-            meanwhile: what there is to do while the PLC is at work; at every try.
 
         Raises:
             NoAnswer: no try found an answer to trust.
@@ -121,26 +110,27 @@ class Link:
         failure: LineError | None = None
         fences = self.counters.fences
         for _ in range(self.retries + 1):
-            self._drop_input()
-            if self._doubt:
+            self.hearing.drop_input()
+            if self.hearing.doubt:
                 try:
                     self.fence()
                 except LineError as error:  # the fence stays up: further tries would be in vain
                     closed = failure if isinstance(failure, TransportClosed) else error
                     raise self._silence(request, closed) from error
             try:
-                if self._echoes is None and self.codec.echo_may_pass(request):
+                if self.echoes is None and self.codec.echo_may_pass(request):
                     self._learn_echo()
-                return self._exchange(request, meanwhile)
+                return self._exchange(request)
             except (TransportError, FrameError) as error:
                 failure = error
             if request.writes and self._took(request):
                 return None  # type: ignore[return-value]  # a write's answer is None
         raise self._silence(request, failure, alive=self.counters.fences > fences)
 
-    def encode_ahead(self, request: Request[A]) -> None:
-        """Have the next request ready, so that it goes out as soon as the answer before it is in."""
-        self._ahead = (request, self.codec.encode(self.station, request))
+    @property
+    def suspicions(self) -> int:
+        """How often something came that may have been an answer gone astray."""
+        return self.hearing.suspicions
 
     @property
     def signs(self) -> tuple[int, int, int]:
@@ -160,14 +150,13 @@ class Link:
         for _ in range(self.retries + 1):
             nonce = Loopback(self._nonces())
             try:
-                if self._echoes is None:
+                if self.echoes is None:
                     self._learn_echo()
                 self._exchange(nonce)
             except (TransportError, FrameError) as error:
                 failure = error
                 continue
-            self._doubt = False
-            self._owed = 0
+            self.hearing.fenced()
             self.counters.fences += 1
             return
         raise self._silence(nonce, failure)
@@ -178,16 +167,15 @@ class Link:
         A PLC that never answered a loopback is let off with a note: with nothing astray before, what is lost
         is the proof, not the answers.
         """
-        self._drop_input()
-        doubt = self._doubt
+        self.hearing.drop_input()
+        doubt = self.hearing.doubt
         try:
             self.fence()
         except (NoAnswer, PlcRefused):
-            if doubt or Command.LOOPBACK in self._answered:
+            if doubt or Command.LOOPBACK in self.answered:
                 raise
             self._note("this PLC answers no loopback (4E): a late answer to an earlier request could pass")
-            self._doubt = False
-            self._owed = 0
+            self.hearing.fenced()
             return False
         return True
 
@@ -200,33 +188,30 @@ class Link:
     def _learn_echo(self) -> None:
         """Ask what cannot be mistaken for its own echo, and hear whether the line echoes."""
         self._exchange(ReadBriefStatus())
-        if self._echoes is None:
-            self._doubt = True
-            self._heard = self._heard or "more than one answer"
+        if self.echoes is None:
+            self.hearing.doubt = True
+            self.hearing.words = self.hearing.words or "more than one answer"
             raise FrameError("something beside the answer: it may have been an echo or not")
 
-    def _exchange(self, request: Request[A], meanwhile: Callable[[], None] | None = None) -> A:
+    def _exchange(self, request: Request[A]) -> A:
         """Send a request once and wait for its answer.
 
         Raises:
             TransportTimeout, TransportClosed, FrameError: this try has failed, and left a doubt.
             PlcRefused: the answer is an error code.
         """
-        ahead = self._ahead
-        raw = ahead[1] if ahead[0] is request else self.codec.encode(self.station, request)
-        self._heard = ""
+        raw = self.codec.encode(self.station, request)
+        self.hearing.words = ""
         self.counters.exchanges += 1
         try:
             self.transport.write(raw)
-            if meanwhile is not None:
-                meanwhile()
             size = self.codec.answer_bytes(request)
             deadline = self.transport.clock() + (len(raw) + size) * self.byte_time_s
-            return self._await(request, raw, size, deadline + self.timeout_s * self._patience)
+            return self._await(request, raw, size, deadline + self.timeout_s * self.hearing.patience)
         except TransportTimeout:
             self.counters.timeouts += 1
-            self._lost()
-            if not self._heard:
+            self.hearing.lost()
+            if not self.hearing.words:
                 self._silent_tries += 1
                 if self._silent_tries >= _SILENT_TRIES_BEFORE_RENEWAL:
                     self._silent_tries = 0
@@ -235,15 +220,11 @@ class Link:
         except PlcRefused:
             raise
         except BaseException:  # an interrupt too: the answer may still come
-            self._lost()
+            self.hearing.lost()
             raise
 
-    def _lost(self) -> None:
-        self._doubt = True
-        self._owed += 1
-
     def _await(self, request: Request[A], raw: bytes, size: int, deadline: float) -> A:
-        echo_due = self._echoes is True
+        echo_due = self.echoes is True
         heard_before = self.counters.bytes_heard
         while True:
             frame = self._next_frame(size, deadline)
@@ -251,34 +232,34 @@ class Link:
                 self._hear_echo()
                 echo_due = False
             elif frame.station != self.station or frame.command != request.command:
-                self._stray_frame(frame)
+                self.hearing.stray(frame)
             else:
                 try:
                     answer = self.codec.parse_answer(request, frame)
                 except FrameError as error:
-                    self._heard = error.message
-                    self._stray_frame(frame)
+                    self.hearing.words = error.message
+                    self.hearing.stray(frame)
                     continue
                 if isinstance(request, Loopback) and answer != request.data:
-                    self._heard = "another loopback's answer"
+                    self.hearing.words = "another loopback's answer"
                     self.counters.strays += 1
-                    self._doubt = True
+                    self.hearing.doubt = True
                     continue
                 self._silent_tries = 0
-                self._answered.add(request.command)
-                if self._echoes is None and not self.codec.echo_may_pass(request):
+                self.answered.add(request.command)
+                if self.echoes is None and not self.codec.echo_may_pass(request):
                     beside = self.counters.bytes_heard - heard_before - len(frame.raw)
                     if beside < len(raw):  # too little for an echo, even a damaged one
-                        self._echoes = False
+                        self.echoes = False
                 return answer
 
     def _next_frame(self, size: int, deadline: float) -> Frame:
         """The next whole frame; bad bytes on the way are dropped and counted."""
         while True:
             try:
-                frame = self._decoder.next_frame()
+                frame = self.hearing.decoder.next_frame()
             except FrameError as error:
-                self._bad_bytes(error)
+                self.hearing.bad_bytes(error)
                 if error.checksum and len(error.raw) == size:  # the answer, damaged: no use in waiting
                     raise
                 continue
@@ -292,66 +273,15 @@ class Link:
             except TransportTimeout:
                 continue
             self.counters.bytes_heard += len(data)
-            self._decoder.feed(data)
-
-    # --- what belongs to no request ---------------------------------------------------------------
-
-    def _bad_bytes(self, error: FrameError) -> None:
-        self._doubt = True
-        if error.checksum:
-            self.counters.checksum_errors += 1
-            self._heard = f"a damaged frame ({error.message})"
-        else:
-            self.counters.garbled += 1
-            self._heard = self._heard or f"{len(error.raw)} bytes that are no frame"
-
-    def _stray_frame(self, frame: Frame) -> None:
-        """A good frame that answers nothing asked now."""
-        self.counters.strays += 1
-        self._doubt = True
-        if frame.station != self.station:
-            self._heard = f"station {frame.station} instead"
-            return
-        self._heard = self._heard or f"an answer to another command ({frame.command:02X})"
-        if frame.command == Command.LOOPBACK:
-            return  # an old fence, which can be told from everything else
-        if self._owed:  # it came, but late: give this PLC more time from now on
-            self._owed -= 1
-            self._patience = min(2 * self._patience, _MOST_PATIENCE)
-        else:
-            self.suspicions += 1
-
-    def _drop_input(self) -> None:
-        """Input found before a request: look at it, as it may tell of an answer that went astray."""
-        left = self._decoder.clear()
-        stray = self.transport.drain()
-        if not left and not stray:
-            return
-        self.counters.bytes_heard += len(stray)
-        self._doubt = True
-        if left:
-            self.suspicions += 1
-        self._decoder.feed(stray)
-        while True:
-            try:
-                frame = self._decoder.next_frame()
-            except FrameError as error:
-                self._bad_bytes(error)
-                self.suspicions += 1
-                continue
-            if frame is None:
-                break
-            self._stray_frame(frame)
-        if self._decoder.clear():
-            self.suspicions += 1
+            self.hearing.decoder.feed(data)
 
     def _hear_echo(self) -> None:
         self.counters.echoes += 1
-        self._heard = "its own request only (the line echoes)"
-        if self._echoes is False:  # fences so far may have been their own echo
-            self._doubt = True
-            self.suspicions += 1
-        self._echoes = True
+        self.hearing.words = "its own request only (the line echoes)"
+        if self.echoes is False:  # fences so far may have been their own echo
+            self.hearing.doubt = True
+            self.hearing.suspicions += 1
+        self.echoes = True
 
     # --- after a failure --------------------------------------------------------------------------
 
@@ -372,13 +302,13 @@ class Link:
             return failure
         return no_answer(
             request,
-            self._heard,
+            self.hearing.words,
             station=self.station,
             target=self.transport.name,
             line=self.transport.line or self.codec.name,
             tries=self.retries + 1,
             timeout_s=self.timeout_s,
             alive=alive,
-            served=request.command in self._answered,
+            served=request.command in self.answered,
             unknown=unknown,
         )

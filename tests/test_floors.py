@@ -25,6 +25,8 @@ FLOORS = {
     "version": 0,
     "counters": 1,
     "silence": 2,
+    "hearing": 3,
+    "stream": 3,
     "protocol": 1,
     "program": 1,
     "simulator": 1,
@@ -42,9 +44,9 @@ FLOORS = {
     "__init__": 6,
     "__main__": 7,
 }
-"""A room may import from lower floors and from itself; link, batch and client share a floor and a job."""
+"""A room may import from lower floors and from itself; the link's parts and the client share a floor."""
 
-SHARED = {"link", "batch", "client", "planner"}
+SHARED = {"hearing", "link", "stream", "batch", "client", "planner"}
 TO_THE_SIMULATOR = {"simulator", "connection", "cli"}
 PRINTERS = {"click", "rich", "logging"}
 

@@ -143,4 +143,4 @@ def test_two_answers_to_the_question_whether_the_line_echoes() -> None:
     peer = Rules({STATUS: lambda asked: soon(RUNNING) if asked else soon(RUNNING + RUNNING)})
     link = linked(peer)
     assert link.ask(Loopback(b"A")) == b"A"
-    assert link._echoes is False
+    assert link.echoes is False

@@ -154,7 +154,7 @@ def test_patience_has_an_end() -> None:
     for _ in range(6):
         with pytest.raises(NoAnswer):
             link.ask(R0)
-    assert link._patience <= 4
+    assert link.hearing.patience <= 4
 
 
 # --- a PLC without 4E -------------------------------------------------------------------------------

@@ -1,0 +1,121 @@
+"""What is heard on a line beside the answers: noise, strangers, answers that nobody waits for.
+
+All of it leaves a *doubt*, which a fence takes away. What could mean that an earlier answer was taken for
+another's is also a *suspicion*: whoever sent many requests of one kind must look at their answers again.
+
+An answer that is still owed to an earlier request is no suspicion when it comes: it was to be expected.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from fatektool.counters import Counters
+from fatektool.errors import FrameError
+from fatektool.protocol.commands import Command
+
+if TYPE_CHECKING:
+    from fatektool.protocol.codec import Decoder, Frame
+    from fatektool.transport.base import Transport
+
+_MOST_PATIENCE: Final = 4
+
+
+class Hearing:
+    """The state of the input of one line.
+
+    Args:
+        transport: the medium.
+        decoder: cuts its input into frames.
+        station: whose answers are waited for.
+
+    Attributes:
+        counters: what was seen so far.
+        suspicions: how often something came that may have been an answer gone astray.
+        doubt: True until a fence proves that nothing else can come.
+        patience: by how much a PLC that answers late gets more time.
+        words: what was heard instead of an answer, for messages; empty for silence.
+    """
+
+    def __init__(self, transport: Transport, decoder: Decoder, station: int) -> None:
+        self.decoder = decoder
+        self.counters = Counters()
+        self.suspicions = 0
+        self.doubt = False
+        self.patience = 1
+        self.words = ""
+        self._transport = transport
+        self._station = station
+        self._owed = 0  # requests without an answer since the last fence: as many may still come
+        self._given_up = 0  # those of them whose answer was not even waited for
+
+    def fenced(self) -> None:
+        """A fence came down: nothing can be on its way any more."""
+        self.doubt = False
+        self._owed = self._given_up = 0
+
+    def lost(self) -> None:
+        """A request found no answer in time."""
+        self.doubt = True
+        self._owed += 1
+
+    def give_up(self) -> None:
+        """A request is on its way whose answer nobody will wait for."""
+        self.doubt = True
+        self._given_up += 1
+
+    def bad_bytes(self, error: FrameError) -> None:
+        """Bytes that are no frame."""
+        self.doubt = True
+        if error.checksum:
+            self.counters.checksum_errors += 1
+            self.words = f"a damaged frame ({error.message})"
+        else:
+            self.counters.garbled += 1
+            self.words = self.words or f"{len(error.raw)} bytes that are no frame"
+
+    def stray(self, frame: Frame) -> None:
+        """A good frame that answers nothing asked now."""
+        self.counters.strays += 1
+        self.doubt = True
+        if frame.station != self._station:
+            self.words = f"station {frame.station} instead"
+            return
+        self.words = self.words or f"an answer to another command ({frame.command:02X})"
+        if frame.command == Command.LOOPBACK:
+            return  # an old fence, which can be told from everything else
+        if self._given_up:
+            self._given_up -= 1
+        elif self._owed:  # it came, but late: give this PLC more time from now on
+            self._owed -= 1
+            self.patience = min(2 * self.patience, _MOST_PATIENCE)
+        else:
+            self.suspicions += 1
+
+    def drop_input(self) -> bool:
+        """Before a request: look at what lies in the input, as it may tell of an answer that went astray.
+
+        True if there was anything.
+        """
+        left = self.decoder.clear()
+        found = self._transport.drain()
+        if not left and not found:
+            return False
+        self.counters.bytes_heard += len(found)
+        self.doubt = True
+        if left:
+            self.suspicions += 1
+        self.decoder.feed(found)
+        while True:
+            try:
+                frame = self.decoder.next_frame()
+            except FrameError as error:
+                self.bad_bytes(error)
+                self.suspicions += 1
+                continue
+            if frame is None:
+                break
+            self.stray(frame)
+        if self.decoder.clear():
+            self.suspicions += 1
+        return True

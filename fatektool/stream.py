@@ -1,0 +1,120 @@
+"""The fast way through many requests: as long as all is in order, and not one exchange longer.
+
+An answer of the right length sends the next request off, and is looked at while the PLC is at work on that::
+
+    request n+1 ─>  look at answer n, encode request n+2  <─ answer n+1
+
+The first sign of anything else (a time-out, a wrong length or checksum, input beside the answer, an error
+code) ends it. The request that is on its way then is given up, and whoever called goes on with ``Link.ask``,
+behind a fence.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeVar
+
+from fatektool.errors import FrameError, PlcRefused, TransportError, TransportTimeout
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from fatektool.link import Link
+    from fatektool.protocol.codec import Frame
+    from fatektool.protocol.commands import Request
+
+A = TypeVar("A")
+
+_READ_BYTES = 4096
+
+
+def ask_in_stream(link: Link, requests: Sequence[Request[A]], first: int, take: Callable[[A], None]) -> None:
+    """Ask reads one after the other from ``requests[first]``, until the end or the first sign of disorder.
+
+    Args:
+        link: the line.
+        requests: reads.
+        first: the one to begin with.
+        take: is given each answer, in order.
+    """
+    hearing = link.hearing
+    if hearing.drop_input() or hearing.doubt or link.echoes is not False:
+        return
+    raw = link.codec.encode(link.station, requests[first])
+    waiting: Frame | bytes = b""  # the last answer, not yet looked at
+    try:
+        for place in range(first, len(requests)):
+            link.transport.write(raw)
+            link.counters.exchanges += 1
+            if place > first and not _accept(link, requests[place - 1], waiting, take):
+                hearing.give_up()
+                return
+            sent = len(raw)
+            if place + 1 < len(requests):
+                raw = link.codec.encode(link.station, requests[place + 1])
+            received = _receive(link, requests[place], sent)
+            if received is None:
+                return
+            waiting = received
+            if hearing.drop_input() or place + 1 == len(requests):
+                _accept(link, requests[place], waiting, take)
+                return
+    except TransportError:
+        hearing.lost()
+    except BaseException:  # an interrupt: the answer may still come
+        hearing.lost()
+        raise
+
+
+def _receive(link: Link, request: Request[A], sent: int) -> Frame | bytes | None:
+    """Bytes of the answer's length, if they came in one piece; else a frame; else None, and a doubt."""
+    hearing, transport = link.hearing, link.transport
+    size = link.codec.answer_bytes(request)
+    rest = wait_s = (sent + size) * link.byte_time_s + link.timeout_s * hearing.patience
+    began = transport.clock()
+    while rest > 0:
+        try:
+            data = transport.read(_READ_BYTES, rest)
+        except TransportTimeout:
+            data = b""
+        link.counters.bytes_heard += len(data)
+        if len(data) == size and rest == wait_s:
+            return data
+        hearing.decoder.feed(data)
+        try:
+            frame = hearing.decoder.next_frame()
+        except FrameError as error:
+            hearing.bad_bytes(error)
+            hearing.give_up()
+            return None
+        if frame is not None:
+            return frame
+        rest = began + wait_s - transport.clock()
+    link.counters.timeouts += 1
+    hearing.lost()
+    return None
+
+
+def _accept(link: Link, request: Request[A], waiting: Frame | bytes, take: Callable[[A], None]) -> bool:
+    """Look at an answer; True if it is what the request asked for."""
+    hearing = link.hearing
+    frame: Frame | None = None
+    try:
+        if isinstance(waiting, bytes):
+            hearing.decoder.feed(waiting)
+            frame = hearing.decoder.next_frame()
+        else:
+            frame = waiting
+        if frame is None:
+            return False
+        if frame.station == link.station and frame.command == request.command:
+            take(link.codec.parse_answer(request, frame))
+            link.answered.add(request.command)
+            return True
+    except FrameError as error:
+        if frame is None:
+            hearing.bad_bytes(error)
+            return False
+    except PlcRefused:
+        return False
+    hearing.stray(frame)
+    return False
