@@ -21,7 +21,7 @@ _PIN = "import os, sys; os.sched_setaffinity(0, [int(sys.argv[1])]); os.execv(sy
 
 
 def pinned(core: int, command: list[str]) -> list[str]:
-    """The command on a core of its own, where the system can: sharing one, it is the scheduler that is timed."""
+    """The command on a core of its own, where the system can: sharing one times the scheduler."""
     if sys.platform != "linux" or len(os.sched_getaffinity(0)) < 2:
         return command
     return [sys.executable, "-c", _PIN, str(sorted(os.sched_getaffinity(0))[core]), *command]
