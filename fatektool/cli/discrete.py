@@ -45,7 +45,11 @@ def _control(name: str, control: Control, text: str) -> None:
 
 
 _control("enable", Control.ENABLE, "Give discretes back to the program.")
-_control("disable", Control.DISABLE, "Hold discretes as they are, whatever the program does; 'set' and 'reset' still switch them.")
+_control(
+    "disable",
+    Control.DISABLE,
+    "Hold discretes as they are, whatever the program does; 'set' and 'reset' still switch them.",
+)
 _control("set", Control.SET, "Switch discretes on.")
 _control("reset", Control.RESET, "Switch discretes off.")
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from fatektool.jobs.registers import Reading
     from fatektool.jobs.selection import Item
 
-_MOST_NAMED = 5
+_MOST_NAMED = 10
 SELECTION = (
     "ELEMENTS are R12, a range R0-R99, a count R0:100, each with a type if need be: R12:i16, D4:f32, "
     "R0:8:bcd. "
@@ -55,12 +55,13 @@ def read_command(elements: tuple[str, ...], connection: Connection, voice: Voice
 
 
 def warn_of(errors: dict[str, str], voice: Voice) -> None:
-    """Say what has no value and why: the first few, and how many more."""
+    """Say what is wrong with which elements: the first few, and how many more."""
     keys = list(errors)
-    for key in keys[:_MOST_NAMED]:
+    told = keys if len(keys) <= _MOST_NAMED else keys[: _MOST_NAMED // 2]
+    for key in told:
         voice.warn(f"{key}: {errors[key]}")
-    if keys[_MOST_NAMED:]:
-        voice.warn(f"{len(keys) - _MOST_NAMED} more have no value, {keys[_MOST_NAMED]} to {keys[-1]}")
+    if len(told) < len(keys):
+        voice.warn(f"and {len(keys) - len(told)} more, {keys[len(told)]} to {keys[-1]}; --json tells of each")
 
 
 def typed(items: list[Item], reading: Reading) -> tuple[dict[str, Value | None], dict[str, str]]:

@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
+import re
 from functools import wraps
+from math import isnan
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import click
 
 from fatektool.cli.options import PATH, Connection, connection_options_but_format, voice_options
-from fatektool.cli.read import SELECTION, shown
+from fatektool.cli.read import SELECTION, shown, warn_of
 from fatektool.cli.snapshot_apply import apply_command
 from fatektool.errors import PlcError, UsageError
 from fatektool.jobs.selection import parse_items
 from fatektool.jobs.snapshot import Snapshot, load_snapshot, take_snapshot
 from fatektool.jobs.snapshot_compare import Change, compare_snapshots
 from fatektool.jobs.snapshot_formats import FORMATS, SUFFIXES, as_json, as_ndjson
-from fatektool.jobs.snapshot_spec import MAX_SPEC, SpecItem, everything, items_of, limits, parse_spec
-from fatektool.jobs.snapshot_store import Keep, append_line, save_dated
+from fatektool.jobs.snapshot_spec import MAX_SPEC, Spec, SpecItem, everything, items_of, limits, parse_spec
+from fatektool.jobs.snapshot_store import Keep, append_line, encoded, require_lines, save_dated
 from fatektool.program.files import read_bounded, require_folder, require_place, write_whole
 
 if TYPE_CHECKING:
@@ -26,6 +28,9 @@ if TYPE_CHECKING:
     from fatektool.cli.output import Voice
     from fatektool.client import Plc
 
+_LINE: Final = re.compile(r"\d[A-Za-z][\d.]{1,3}", re.ASCII)
+_LOOKED_AT: Final = 200
+_BACKUP: Final = b'"fatektool.backup/'
 F = TypeVar("F", bound="Callable[..., Any]")
 
 
@@ -40,6 +45,10 @@ def either_format(function: F) -> F:
             raise UsageError(
                 f"--format {' '.join(formats)}: expected one of {', '.join(FORMATS)}, "
                 f"and for the line one such as 7E1"
+            )
+        if lines and not _LINE.fullmatch(lines[0]):
+            raise UsageError(
+                f"--format {lines[0]}: expected one of {', '.join(FORMATS)}, or a line's format such as 8N1"
             )
         form = forms[0].lower() if forms else "json"
         return function(*args, form=form, line_format=lines[0] if lines else "7E1", **rest)
@@ -65,7 +74,8 @@ class SnapshotGroup(click.Group):
 def snapshot_command() -> None:
     """Read a PLC's data to JSON, compare snapshots, put one back.
 
-    'fatektool snapshot ELEMENTS…' is 'snapshot take ELEMENTS…'.
+    'fatektool snapshot ELEMENTS…' is short for 'fatektool snapshot take ELEMENTS…': see 'fatektool snapshot
+    take --help' for --spec, --all, --output, --append, --format and --keep.
     """
 
 
@@ -83,7 +93,7 @@ def snapshot_command() -> None:
     "--output",
     type=str,
     metavar="FILE|DIR/",
-    help="Into FILE, or into a dated file in DIR; else stdout.",
+    help="Into FILE, which is replaced, or into a dated file in DIR; else, and for -, stdout.",
 )
 @click.option("--append", type=PATH, metavar="FILE.ndjson", help="As one line at the end of FILE.")
 @click.option(
@@ -91,7 +101,7 @@ def snapshot_command() -> None:
     "formats",
     multiple=True,
     metavar="json|ndjson|csv|influx|prometheus",
-    help="How the snapshot is written (json). A line's format, such as 8N1, may stand here too.",
+    help="How the snapshot is written, by default json; the line's format, such as 8N1, may stand here too.",
 )
 @click.option(
     "--keep", metavar="N|DAYSd", help="Keep N snapshots, or those of so many days, in DIR or FILE.ndjson."
@@ -112,35 +122,34 @@ def take_command(
     keep: str | None,
 ) -> int:
     """Read data from the PLC."""
-    items = selected(elements, spec, groups, whole=whole)
+    items = selected(elements, spec, groups, whole=whole).items
+    output = None if output == "-" else output
     kept = None if keep is None else Keep.parse(keep)
     folder = _folder(output)
     if kept is not None and folder is None and append is None:
         raise UsageError("--keep goes with -o DIR/ or --append FILE")
-    for place in (append, None if output is None or folder is not None else Path(output)):
-        if place is not None:
-            require_place(place, overwrite=True)
+    if append is not None:
+        require_lines(append, kept)
+    if output is not None and folder is None:
+        _require_output(Path(output))
     with connection.open(voice) as plc:
         snapshot = _take(plc, items, whole=whole)
     text = FORMATS[form](snapshot)
     if folder is not None:
         voice.detail(f"saved {save_dated(snapshot, text, folder, suffix=SUFFIXES[form], keep=kept)}")
     elif output is not None:
-        write_whole(Path(output), text.encode(), overwrite=True)
+        write_whole(Path(output), encoded(text), overwrite=True)
     if append is not None:
-        append_line(append, as_ndjson(snapshot), kept)
+        append_line(append, as_ndjson(snapshot), kept, wait_s=max(60.0, connection.lock_wait_s))
     if voice.json:
         click.echo(as_json(snapshot), nl=False)
     elif output is None and append is None:
         click.echo(text, nl=False)
-    for key, error in snapshot.errors.items():
-        voice.warn(f"{key}: {error}")
+    warn_of(snapshot.errors, voice)
     return PlcError.exit_code if snapshot.errors else 0
 
 
-def selected(
-    elements: tuple[str, ...], spec: Path | None, groups: tuple[str, ...], *, whole: bool
-) -> list[SpecItem]:
+def selected(elements: tuple[str, ...], spec: Path | None, groups: tuple[str, ...], *, whole: bool) -> Spec:
     """The items that the options name; for ``--all`` none yet, as the PLC must be asked."""
     if sum((bool(elements), spec is not None, whole)) != 1:
         raise UsageError("expected one of: ELEMENTS, --spec FILE.toml, --all")
@@ -148,7 +157,7 @@ def selected(
         raise UsageError("--group goes with --spec")
     if spec is not None:
         return parse_spec(read_bounded(spec, MAX_SPEC), str(spec), groups)
-    return items_of(parse_items(elements))
+    return Spec(items_of(parse_items(elements)))
 
 
 def _take(plc: Plc, items: list[SpecItem], *, whole: bool) -> Snapshot:
@@ -156,6 +165,24 @@ def _take(plc: Plc, items: list[SpecItem], *, whole: bool) -> Snapshot:
         return take_snapshot(plc, items)
     system = plc.detailed_status().system
     return take_snapshot(plc, everything(system), limits=limits(system))
+
+
+def _require_output(path: Path) -> None:
+    """Check that a snapshot can be put here, and that no program is lost by it.
+
+    Raises:
+        UsageError: it cannot, or a backup lies there.
+    """
+    real = require_place(path, overwrite=True)
+    try:
+        with real.open("rb") as file:
+            start = file.read(_LOOKED_AT)
+    except OSError:  # it is not there, or cannot be read, but perhaps replaced
+        return
+    if _BACKUP in start:
+        raise UsageError(
+            f"{path} is the backup of a program, and is kept", hint="name another file", file=str(path)
+        )
 
 
 def _folder(output: str | None) -> Path | None:
@@ -174,7 +201,9 @@ def _folder(output: str | None) -> Path | None:
 @voice_options
 def diff_command(a: Path, b: Path, voice: Voice, *, ignore: tuple[str, ...], tolerance: float) -> int:
     """Compare the snapshots A and B: exit 0 if nothing differs, 1 if something does. Needs no PLC."""
-    one, other = load_snapshot(a), load_snapshot(b)
+    if isnan(tolerance):
+        raise UsageError("--tolerance nan: expected a number from 0")
+    one, other = load_snapshot(a, voice.warn), load_snapshot(b, voice.warn)
     changes = compare_snapshots(one, other, ignore=ignore, tolerance=tolerance)
     document = {
         "schema": "fatektool.snapshot-diff/1",
@@ -192,7 +221,11 @@ def _change_lines(changes: list[Change]) -> Iterator[str]:
         yield "same"
     width = max((len(change.key) for change in changes), default=0)
     for change in changes:
-        yield f"{change.key:<{width}}  {shown(change.a, None)} -> {shown(change.b, None)}"
+        one, other = (
+            "(not there)" if change.absent == side else shown(value, "no value")
+            for side, value in (("a", change.a), ("b", change.b))
+        )
+        yield f"{change.key:<{width}}  {one} -> {other}"
 
 
 snapshot_command.add_command(apply_command)

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import os
+import shlex
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.core import ParameterSource
 
 from fatektool.cli.documents import where
 from fatektool.cli.options import PATH, Connection, connection_options, yes_option
 from fatektool.cli.output import Voice, can_ask
-from fatektool.cli.read import shown
-from fatektool.errors import PlcError, UsageError
+from fatektool.cli.read import shown, warn_of
+from fatektool.errors import PlcError, RestoreIncomplete, UsageError
+from fatektool.jobs.registers import named
 from fatektool.jobs.snapshot import load_snapshot
 from fatektool.jobs.snapshot_apply import ApplyPlan, apply_plan, plan_apply
 from fatektool.jobs.snapshot_formats import as_json
@@ -53,18 +57,19 @@ def apply_command(
     """Put the data in FILE back into the PLC.
 
     Only what differs is written; the present values are saved as a safety snapshot first, and all is read
-    back. Inputs (X) are not written. What the PLC does not take is named (exit 4).
+    back. Inputs (X) are not written. What the PLC does not take is named (exit 4). If the line fails on the
+    way (exit 6), the same command finishes it.
     """
     if no_safety_snapshot and safety_dir is not None:
         raise UsageError("--no-safety-snapshot does not go with --safety-dir")
-    snapshot = load_snapshot(file)
+    snapshot = load_snapshot(file, voice.warn)
     folder = None if no_safety_snapshot else require_folder(safety_dir or file.parent)
     safety: str | None = None
     failed: list[NotTaken] = []
     with connection.open(voice) as plc:
         plan = plan_apply(plc, snapshot, only)
         _warn(plan, voice)
-        lines = list(_plan_lines(plan, snapshot))
+        lines = list(_plan_lines(plan, snapshot, file))
         if plan.changes and not dry_run:
             if not yes and not can_ask():
                 raise UsageError(
@@ -79,13 +84,37 @@ def apply_command(
             )
             if not voice.confirm(f"Write {len(plan.changes)} values into the PLC?", yes=yes):
                 raise UsageError("not agreed to: nothing was written")
-            failed = apply_plan(plc, plan, safety)
+            try:
+                failed = apply_plan(plc, plan, safety)
+            except RestoreIncomplete as error:
+                command = _go_on(connection)
+                error.details["command"] = command
+                where_before = (
+                    f"the values before lie in {safety}" if safety else "the values before are not saved"
+                )
+                error.hint = f"{where_before}; mend the cause, then: {command}"
+                raise
         document = _document(plc, file, plan, snapshot, failed, safety=safety, dry_run=dry_run)
     voice.show(document, _result_lines(plan, lines, failed, dry_run=dry_run))
-    for each in failed:
-        got = "nothing" if each.got is None else f"{each.got:X}"
-        voice.warn(f"{each.element} did not take: expected {each.wanted:X}, got {got}: {each.reason}")
-    return PlcError.exit_code if failed else 0
+    names = plan.keys()
+    warn_of({names.get(each.element, str(each.element)): _did_not(each) for each in failed}, voice)
+    return PlcError.exit_code if failed or plan.refused else 0
+
+
+def _did_not(each: NotTaken) -> str:
+    digits = max(1, each.element.kind.bits // 4)
+    got = "cannot be read" if each.got is None else f"holds {each.got:0{digits}X}"
+    return f"did not take: expected {each.wanted:0{digits}X} in {each.element}, it {got}: {each.reason}"
+
+
+def _go_on(connection: Connection) -> str:
+    """The one command that finishes what is left: the same again."""
+    context = click.get_current_context()
+    words = list(context.find_root().obj)
+    if context.get_parameter_source("port") is ParameterSource.ENVIRONMENT:
+        at = words.index("apply") + 1
+        words[at:at] = ["-p", connection.target]
+    return shlex.join(["fatektool", *words])
 
 
 def _warn(plan: ApplyPlan, voice: Voice) -> None:
@@ -96,18 +125,20 @@ def _warn(plan: ApplyPlan, voice: Voice) -> None:
         (plan.missing, "no value in the snapshot"),
     ):
         if keys:
-            more = f" and {len(keys) - 5} more" if len(keys) > 5 else ""
-            voice.warn(f"not written: {', '.join(keys[:5])}{more}: {why}")
+            voice.warn(f"not written: {named(keys)}: {why}")
+    warn_of({key: f"not written: {error}" for key, error in plan.refused.items()}, voice)
 
 
 def _save_safety(present: Snapshot, file: Path, folder: Path) -> Path:
-    stem = f"{file.stem[:150]}.safety-st{present.station:02}-{stamp(present.time)}"
+    start = os.fsencode(file.stem)[:150].decode(errors="ignore")  # 255 bytes is all that a name may have
+    stem = f"{start}.safety-st{present.station:02}-{stamp(present.time)}"
     path = free_name(folder, stem, "json")
     write_whole(path, as_json(present).encode(), overwrite=False)
     return path
 
 
-def _plan_lines(plan: ApplyPlan, snapshot: Snapshot) -> Iterator[str]:
+def _plan_lines(plan: ApplyPlan, snapshot: Snapshot, file: Path) -> Iterator[str]:
+    yield f"{file}: taken {snapshot.time} from {snapshot.target}, station {snapshot.station}"
     width = max((len(key) for key, *_ in plan.changes), default=0)
     for key, *_ in plan.changes:
         before, after = plan.present.values[key], snapshot.values[key]
@@ -118,7 +149,8 @@ def _result_lines(
     plan: ApplyPlan, lines: list[str], failed: list[NotTaken], *, dry_run: bool
 ) -> Iterator[str]:
     if not plan.changes:
-        yield "same: nothing was written"
+        other = plan.inputs or plan.missing or plan.refused
+        yield "nothing to write: all else is the same" if other else "same: nothing was written"
     elif dry_run:
         yield from lines
         yield "dry run: nothing was written"
@@ -136,6 +168,7 @@ def _document(
     safety: str | None,
     dry_run: bool,
 ) -> dict[str, Any]:
+    names = plan.keys()
     return {
         "schema": "fatektool.apply/1",
         **where(plc),
@@ -151,7 +184,18 @@ def _document(
             for key, element, *_ in plan.changes
         ],
         "written": 0 if dry_run else len(plan.writes) - len(failed),
-        "not_taken": [{"element": str(each.element), "reason": each.reason} for each in failed],
+        "not_taken": [
+            {
+                "key": names.get(each.element, str(each.element)),
+                "element": str(each.element),
+                "reason": each.reason,
+            }
+            for each in failed
+        ]
+        + [
+            {"key": key, "element": snapshot.elements[key]["element"], "reason": reason}
+            for key, reason in plan.refused.items()
+        ],
         "not_written": [*plan.inputs, *plan.missing],
         "safety_snapshot": safety,
     }

@@ -10,14 +10,16 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from fatektool.cli.options import PATH, Connection, connection_options
+from fatektool.cli.documents import error_document
+from fatektool.cli.options import PATH, Connection, Seconds, connection_options
+from fatektool.cli.output import tell
 from fatektool.cli.read import SELECTION, shown
 from fatektool.cli.snapshot import selected
-from fatektool.errors import LineError
+from fatektool.errors import FatektoolError, LineError, PlcError
 from fatektool.jobs.snapshot import Snapshot, take_snapshot
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
     from pathlib import Path
 
     from fatektool.cli.output import Voice
@@ -28,6 +30,9 @@ if TYPE_CHECKING:
 _TREND: Final = 24
 _BARS: Final = "▁▂▃▄▅▆▇█"
 _MOST_FAILURES: Final = 10
+_VALUE: Final = 7
+_GAPS: Final = 4
+_AROUND: Final = 4  # title, header, what is left out, and the line of the cursor
 
 
 @click.command(
@@ -38,7 +43,12 @@ _MOST_FAILURES: Final = 10
 @click.argument("elements", nargs=-1)
 @click.option("--spec", type=PATH, metavar="FILE.toml", help="What to read, with names, scales and units.")
 @click.option("--group", "groups", multiple=True, help="Only items of this group of --spec; repeat for more.")
-@click.option("--interval", type=click.FloatRange(0, 86400), default=1.0, show_default=True, metavar="S")
+@click.option(
+    "--interval",
+    type=Seconds(0, 86400),
+    metavar="S",
+    help="From round to round; by default interval_s of --spec, else 1.",
+)
 @click.option("--count", type=click.IntRange(1), help="So many rounds; by default until Ctrl-C.")
 @connection_options
 def watch_command(
@@ -48,19 +58,40 @@ def watch_command(
     *,
     spec: Path | None,
     groups: tuple[str, ...],
-    interval: float,
+    interval: float | None,
     count: int | None,
-) -> None:
+) -> int:
     """Show values live."""
-    items = selected(elements, spec, groups, whole=False)
-    with connection.open(voice) as plc:
-        rounds = _rounds(plc, items, interval, count, voice)
-        if sys.stdout.isatty() and not voice.json:
-            _live(rounds, items)
-        else:
-            for snapshot in rounds:
-                click.echo(json.dumps(_document(snapshot), allow_nan=False))
-                sys.stdout.flush()
+    wanted = selected(elements, spec, groups, whole=False)
+    pace_s = next((pace for pace in (interval, wanted.interval_s) if pace is not None), 1.0)
+    try:
+        with connection.open(voice) as plc:
+            rounds = _rounds(plc, wanted.items, pace_s, count, voice)
+            last = _live(rounds, wanted.items) if sys.stdout.isatty() and not voice.json else _lines(rounds)
+    except (FatektoolError, KeyboardInterrupt) as error:
+        if not voice.json:
+            raise
+        return _report(error)
+    return PlcError.exit_code if last is not None and last.errors else 0
+
+
+def _report(error: FatektoolError | KeyboardInterrupt) -> int:
+    """Say what went wrong in one line of NDJSON, as all before it, and one on stderr."""
+    from fatektool.cli import Interrupted
+
+    told = error if isinstance(error, FatektoolError) else Interrupted("interrupted")
+    click.echo(json.dumps(error_document(told)))
+    tell(f"fatektool: {' '.join(str(told).split())}")
+    return told.exit_code
+
+
+def _lines(rounds: Iterator[Snapshot]) -> Snapshot | None:
+    """Print a line a round; give the last."""
+    snapshot = None
+    for snapshot in rounds:
+        click.echo(json.dumps(_document(snapshot), allow_nan=False))
+        sys.stdout.flush()
+    return snapshot
 
 
 def _rounds(
@@ -100,36 +131,71 @@ def _document(snapshot: Snapshot) -> dict[str, Any]:
     }
 
 
-def _live(rounds: Iterator[Snapshot], items: list[SpecItem]) -> None:
+def _live(rounds: Iterator[Snapshot], items: list[SpecItem]) -> Snapshot | None:
+    """Show a table that changes; give the last round."""
     from rich.live import Live
 
     trends: dict[str, deque[float]] = {item.item.key: deque(maxlen=_TREND) for item in items}
     before: dict[str, Value | None] = {}
-    with Live(refresh_per_second=4) as live:
+    snapshot = None
+    with Live(auto_refresh=False, vertical_overflow="crop") as live:
         for snapshot in rounds:
-            live.update(_table(snapshot, before, trends), refresh=True)
+            live.update(_table(snapshot, before, trends, live.console.size), refresh=True)
             before = snapshot.values
+    return snapshot
 
 
-def _table(snapshot: Snapshot, before: dict[str, Value | None], trends: dict[str, deque[float]]) -> Any:
+def _table(
+    snapshot: Snapshot,
+    before: dict[str, Value | None],
+    trends: dict[str, deque[float]],
+    size: tuple[int, int],
+) -> Any:
+    """What is on the terminal: as many rows as it has room for, and a word about the others.
+
+    Args:
+        snapshot: this round's.
+        before: the values of the round before.
+        trends: the numbers so far, by key; gets this round's.
+        size: the terminal's columns and lines.
+    """
+    from rich.console import Group
     from rich.table import Table
     from rich.text import Text
 
-    mode = "RUN" if snapshot.running else "STOP"
-    table = Table(title=f"station {snapshot.station} on {snapshot.target}  {mode}  {snapshot.time}", box=None)
-    table.add_column("element", no_wrap=True)
-    table.add_column("value", justify="right", no_wrap=True)
-    table.add_column("unit")
-    table.add_column("", width=1)
+    columns, lines = size
+    names = max(7, min(max(map(len, snapshot.values), default=0), columns // 3))
+    with_units = any("unit" in part for part in snapshot.elements.values())
+    table = Table(box=None, padding=(0, 1, 0, 0))
+    table.add_column("element", no_wrap=True, min_width=names, max_width=names)
+    table.add_column("value ", justify="right", no_wrap=True, min_width=_VALUE)
+    if with_units:
+        table.add_column("unit", no_wrap=True)
     table.add_column("trend", no_wrap=True)
-    for key, value in snapshot.values.items():
+    for value, trended in zip(snapshot.values.values(), trends.values(), strict=True):
         if isinstance(value, int | float):
-            trends[key].append(float(value))
-        changed = key in before and before[key] != value
-        text = Text(shown(value, snapshot.errors.get(key)), style="bold reverse" if changed else "")
-        unit = str(snapshot.elements[key].get("unit", ""))
-        table.add_row(Text(key), text, Text(unit), "*" if changed else "", trend(trends[key]))
-    return table
+            trended.append(float(value))
+    units = (
+        max(4, *(len(str(part.get("unit", ""))) for part in snapshot.elements.values())) if with_units else 0
+    )
+    values = max(_VALUE, *(len(shown(value, None)) + 1 for value in snapshot.values.values()))
+    fits = max(1, columns - names - values - units - _GAPS)
+    room = max(1, lines - _AROUND)
+    for key, value in list(snapshot.values.items())[:room]:
+        text = Text(shown(value, None))
+        if key in before and before[key] != value:
+            text = Text.assemble((text.plain, "bold reverse"), "*")
+        else:
+            text.append(" ")
+        unit = [Text(str(snapshot.elements[key].get("unit", "")))] if with_units else []
+        last = snapshot.errors[key] if key in snapshot.errors else trend(trends[key])[-fits:]
+        table.add_row(Text(key), text, *unit, Text(last))
+    mode = "RUN" if snapshot.running else "STOP"
+    title = f"{snapshot.time}  {mode}  station {snapshot.station} on {snapshot.target}"
+    parts: list[Any] = [Text(title, no_wrap=True, overflow="ellipsis"), table]
+    if len(snapshot.values) > room:
+        parts.append(Text(f"and {len(snapshot.values) - room} more"))
+    return Group(*parts)
 
 
 def trend(values: deque[float], bars: str = _BARS) -> str:
@@ -137,6 +203,7 @@ def trend(values: deque[float], bars: str = _BARS) -> str:
     if not values:
         return ""
     least, most = min(values), max(values)
-    span = most - least
-    place: Callable[[float], int] = lambda value: int((value - least) / span * (len(bars) - 1)) if span else 0  # noqa: E731
-    return "".join(bars[place(value)] for value in values)
+    span = most / 2 - least / 2  # halves: the whole may be past the largest number
+    if not span:
+        return bars[0] * len(values)
+    return "".join(bars[round((value / 2 - least / 2) / span * (len(bars) - 1))] for value in values)

@@ -8,7 +8,7 @@ import click
 
 from fatektool.cli.documents import where
 from fatektool.cli.options import Connection, connection_options
-from fatektool.cli.read import shown
+from fatektool.cli.read import shown, warn_of
 from fatektool.errors import DataError, LineError, PlcError
 from fatektool.jobs.assignment import parse_assignments
 from fatektool.jobs.registers import write_elements
@@ -57,10 +57,12 @@ def write_command(assignments: tuple[str, ...], connection: Connection, voice: V
     taken = len(pairs) - len(failed)
     lines = [f"{taken} of {len(pairs)} elements written and read back"]
     voice.show(document, lines)
-    for each, entry in zip(failed, not_taken, strict=True):
+    told = {}
+    for each in failed:
         item = by_element[each.element]
         wanted, got = (shown(_value(item, raw), None) for raw in (each.wanted, each.got))
-        voice.warn(f"{entry['element']} did not take: expected {wanted}, {_holds(got)}: {each.reason}")
+        told[item.key] = f"did not take: expected {wanted}, {_holds(got)}: {each.reason}"
+    warn_of(told, voice)
     return PlcError.exit_code if failed else 0
 
 

@@ -45,8 +45,9 @@ def parse_assignment(text: str) -> list[tuple[Item, int]]:
     if len(values) == 1:
         values *= len(items)
     if len(values) != len(items):
-        raise UsageError(f"{text!r}: expected 1 value or {len(items)}, got {len(values)}")
-    typed = left.rpartition(":")[2].lower() in {kind.value for kind in ValueType}
+        expected = "1 value" if len(items) == 1 else f"1 value or {len(items)}"
+        raise UsageError(f"{text!r}: expected {expected}, got {len(values)}")
+    typed = left.rpartition(":")[2].strip().lower() in {kind.value for kind in ValueType}
     return [(item, _encoded(item, value, typed=typed)) for item, value in zip(items, values, strict=True)]
 
 

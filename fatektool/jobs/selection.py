@@ -90,7 +90,7 @@ def _item(named: Element, kind: ValueType | None, *, wide: bool) -> Item:
     element = Element(f"D{named.symbol}", named.address) if wide else named
     bits = element.kind.bits
     if kind is not None and (kind.bits or bits) != bits:
-        raise UsageError(f"{named}: {kind.value} takes {kind.bits} bits, {named} has {bits}")
+        raise UsageError(f"{named}: {kind.value} is for elements of {kind.bits} bits, {named} has {bits}")
     if kind in {ValueType.BCD, ValueType.HEX} and bits == 1:
         raise UsageError(f"{named}: a discrete is on or off, not {kind.value}")
     return Item(str(named), element, kind or default_type(bits))
@@ -108,8 +108,8 @@ def _type(text: str | None, whole: str) -> ValueType | None:
 
 def _count(text: str, first: Element, last: str | None, count: str | None, stride: int) -> int:
     if count is not None:
-        number = int(count[:9])
-        if not 1 <= number <= _MOST or len(count) > 9:
+        number = int(count.lstrip("0")[:9] or "0")
+        if not 1 <= number <= _MOST:
             raise UsageError(f"{text!r}: count: expected 1 to {_MOST}, got {count}")
         return number
     if last is None:
@@ -130,10 +130,11 @@ def overlapping(elements: Iterable[Element]) -> tuple[Element, Element] | None:
     """Two of these elements that share a discrete or register; None if none do."""
     owner: dict[tuple[str, int], Element] = {}
     for element in elements:
-        for atom in places_of(element):
-            other = owner.setdefault(atom, element)
-            if other is not element:
-                return other, element
+        places = places_of(element)
+        for place in places:
+            if place in owner:
+                return owner[place], element
+        owner |= dict.fromkeys(places, element)
     return None
 
 

@@ -146,10 +146,9 @@ def apply_plan(plc: Plc, plan: ApplyPlan, safety: str | None) -> list[NotTaken]:
     except (LineError, KeyboardInterrupt) as error:
         cause = error.message if isinstance(error, LineError) else "interrupted"
         count = len(plan.changes)
-        where = f"lie in {safety}" if safety else "were not saved"
         raise RestoreIncomplete(
             f"the snapshot was not applied whole ({cause}): some of {count} values may be written",
-            hint=f"run it again: it writes what is left; the values before {where}",
+            hint=f"run it again: it writes what is left; the values before lie in {safety or 'no file'}",
             safety_snapshot=safety,
             cause=cause,
         ) from error

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import calendar
-import csv
-import io
 import json
 import re
 import time
@@ -31,11 +29,9 @@ def as_ndjson(snapshot: Snapshot) -> str:
 
 def as_csv(snapshot: Snapshot) -> str:
     """A header and a row an item."""
-    text = io.StringIO()
-    rows = csv.writer(text, lineterminator="\n")
-    rows.writerow(_COLUMNS)
+    rows: list[tuple[object, ...]] = [_COLUMNS]
     for key, part in snapshot.elements.items():
-        rows.writerow(
+        rows.append(
             (
                 snapshot.time,
                 snapshot.target,
@@ -49,7 +45,7 @@ def as_csv(snapshot: Snapshot) -> str:
                 snapshot.errors.get(key, ""),
             )
         )
-    return text.getvalue()
+    return "".join(",".join(_field(str(cell)) for cell in row) + "\n" for row in rows)
 
 
 def as_influx(snapshot: Snapshot) -> str:
@@ -121,10 +117,17 @@ def _plain(value: Value | None) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
+def _field(text: str) -> str:
+    """A field of CSV; the csv module of some versions leaves a carriage return bare."""
+    if any(character in text for character in ',"\r\n'):
+        return '"' + text.replace('"', '""') + '"'
+    return text
+
+
 def _influx_tag(text: str) -> str:
-    """A tag's value. A backslash stands for itself and cannot be escaped, so none can be the last."""
-    plain = re.sub(r"[\x00-\x1f\x7f]", " ", text).rstrip("\\")
-    return re.sub(r"([,= ])", r"\\\1", plain or "-")
+    """A tag's value. There is no way to escape a backslash that all readers agree on: / stands for it."""
+    plain = re.sub(r"[\x00-\x1f\x7f]", " ", text).replace("\\", "/")
+    return re.sub(r"([,= ])", r"\\\1", plain)
 
 
 def _influx_field(value: Value) -> str:
