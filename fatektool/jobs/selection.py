@@ -89,11 +89,15 @@ def parse_item(text: str) -> list[Item]:
 def _item(named: Element, kind: ValueType | None, *, wide: bool) -> Item:
     element = Element(f"D{named.symbol}", named.address) if wide else named
     bits = element.kind.bits
-    if kind is not None and (kind.bits or bits) != bits:
-        raise UsageError(f"{named}: {kind.value} is for elements of {kind.bits} bits, {named} has {bits}")
-    if kind in {ValueType.BCD, ValueType.HEX} and bits == 1:
-        raise UsageError(f"{named}: a discrete is on or off, not {kind.value}")
+    if kind is not None and not _fits(kind, bits):
+        fitting = ", ".join(kind.value for kind in ValueType if _fits(kind, bits))
+        width = "1 bit" if bits == 1 else f"{bits} bits"
+        raise UsageError(f"{named}: {kind.value} does not fit {width}: expected {fitting}")
     return Item(str(named), element, kind or default_type(bits))
+
+
+def _fits(kind: ValueType, bits: int) -> bool:
+    return kind.bits == bits or (kind.bits is None and bits > 1)
 
 
 def _type(text: str | None, whole: str) -> ValueType | None:

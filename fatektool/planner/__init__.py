@@ -6,8 +6,8 @@ every protocol.
 
 ::
 
-    elements ─> atoms on lines ─> edges between atoms ─> the least path ─> requests ─> answers ─> values
-                 atoms.py          reads.py, writes.py     paths.py                     atoms.py
+    elements ─> lines of places ─> edges between places ─> the least path ─> requests ─> answers ─> values
+                 atoms.py           edges.py                paths.py          reads.py, writes.py  atoms.py
 
 A set of elements falls into *atoms*: discretes, and registers of 16 bits. The atoms of one symbol lie on a
 line, the lines one behind the other, and a plan is a path over them:
@@ -16,8 +16,10 @@ line, the lines one behind the other, and a plan is a path over them:
   request of its own; a run of a read goes on over a gap where that costs less than another request;
 - **mixed** items (48, 49): registers, pairs of them, discretes, packed words, of all lines together.
 
-The result is the least for this cost: ``paths.py`` says why. An element of 32 bits or a packed word is read
-within one request, so that its parts are of one scan.
+An element of 32 bits or a packed word lies within one run or item, so that its parts are of one scan, in
+reads and in writes; a write writes each atom once. Of all plans that keep to this, the result is one that
+costs least: ``edges.py`` says why no other needs to be looked at, ``paths.py`` why the least of them is
+found, and the tests compare it with every plan there is.
 """
 
 from fatektool.planner.atoms import Values

@@ -13,7 +13,7 @@ Timers' and counters' 32-bit registers are read as such: a counter may have 32 b
 
 from __future__ import annotations
 
-from bisect import bisect_left
+from bisect import bisect_left, bisect_right
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
@@ -21,7 +21,7 @@ from fatektool.protocol.commands import ReadDiscretes, ReadMixed, ReadRegisters,
 from fatektool.protocol.elements import KINDS, Element
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
 _WHOLE_32: Final = {"DRT", "DRC"}
 
@@ -31,97 +31,155 @@ Atom = tuple[str, int]
 
 def atoms_of(element: Element) -> list[Atom]:
     """The atoms that hold an element, the lowest first."""
+    symbol, first, last = _span(element)
+    return [(symbol, address) for address in range(first, last + 1)]
+
+
+def _span(element: Element) -> tuple[str, int, int]:
+    """The line that an element lies on, its first and last address there."""
     symbol, address, bits = element.symbol, element.address, element.kind.bits
     if bits > 1 and symbol.startswith(("W", "DW")):
-        return [(symbol[-1], address + place) for place in range(bits)]
+        return symbol[-1], address, address + bits - 1
     if bits == 32 and symbol not in _WHOLE_32:
-        return [(symbol[1:], address), (symbol[1:], address + 1)]
-    return [(symbol, address)]
+        return symbol[1:], address, address + 1
+    return symbol, address, address
+
+
+def parts_of(element: Element, value: int) -> dict[Atom, int]:
+    """A value as what each of the element's atoms holds of it."""
+    atoms = atoms_of(element)
+    width = element.kind.bits // len(atoms)
+    return {atom: value >> (place * width) & ((1 << width) - 1) for place, atom in enumerate(atoms)}
+
+
+def value_of(element: Element, parts: Mapping[Atom, int]) -> int:
+    """The value of an element from what its atoms hold."""
+    atoms = atoms_of(element)
+    width = element.kind.bits // len(atoms)
+    return sum(parts[atom] << (place * width) for place, atom in enumerate(atoms))
 
 
 @dataclass(slots=True)
 class Line:
-    """The wanted atoms of one symbol, in order.
+    """Wanted elements of one symbol, in order, each as the span of its atoms.
+
+    A span within another is left out, so that first and last addresses both ascend.
 
     Attributes:
         symbol: ``X``, ``R``, ``DRC``, …
         stride: how far apart neighbours are.
-        addresses: sorted.
-        start: the node of the first atom.
-        joined: places that belong together with the one before them, in one request.
+        firsts: each span's first address.
+        lasts: each span's last address.
+        floor: no request goes below this address,
+        bound: nor to this one or past it.
+        exact: all between floor and bound is wanted.
+        start: the node of the first span.
+        ends: the places behind the stretches of neighbours, behind which there is a gap.
+        uneven: registers and pairs of them stand side by side.
     """
 
     symbol: str
     stride: int
-    addresses: list[int]
-    start: int = 0
-    joined: set[int] = field(default_factory=set)
-    ends: list[int] = field(default_factory=list)
+    firsts: list[int]
+    lasts: list[int]
+    floor: int
+    bound: int
+    exact: bool
+    start: int
+    ends: list[int] = field(init=False)
+    uneven: bool = field(init=False)
 
-    def finish(self, start: int) -> None:
-        """Find the ends of the stretches of neighbours: the places behind which there is a gap."""
-        self.start = start
-        last = len(self.addresses) - 1
-        self.ends = [
-            place
-            for place, address in enumerate(self.addresses)
-            if place == last or self.addresses[place + 1] != address + self.stride
-        ]
+    def __post_init__(self) -> None:
+        self.ends = _stretch_ends(self.firsts, self.lasts, self.stride)
+        self.uneven = len({last - first for first, last in zip(self.firsts, self.lasts, strict=True)}) > 1
 
-    def end_from(self, place: int) -> int:
-        """The end of the stretch that a place is in."""
-        return self.ends[bisect_left(self.ends, place)]
+    def __len__(self) -> int:
+        return len(self.firsts)
 
-    def items(self, place: int, to: int) -> list[Element]:
-        """The registers of a stretch as mixed items, neighbours in pairs where a pair is one element."""
-        pairs = f"D{self.symbol}" in KINDS and f"D{self.symbol}" not in _WHOLE_32
-        found: list[Element] = []
-        at = place
-        while at < to:
-            double = pairs and at + 1 < to and at + 2 not in self.joined
-            found.append(Element(f"D{self.symbol}" if double else self.symbol, self.addresses[at]))
-            at += 2 if double else 1
-        return found
+    def place_past(self, address: int, place: int) -> int:
+        """The place behind the last span that ends before this address, from a place on."""
+        return bisect_left(self.lasts, address, place)
 
-    def cut_before(self, place: int, least: int) -> int:
-        """The nearest place up to this one before which a request may end, past ``least``."""
-        at = place
-        while at > least and at in self.joined:
-            at -= 1
-        return at if at > least else place
+    def straddled(self, address: int, place: int) -> bool:
+        """True if a span from a place on begins before this address and does not end there."""
+        across = self.place_past(address, place)
+        return across < len(self) and self.firsts[across] < address
+
+    def rest_of_stretch(self, place: int) -> int:
+        """How many addresses there are from a place to the end of its stretch."""
+        return self.lasts[self.ends[bisect_right(self.ends, place)] - 1] + self.stride - self.firsts[place]
 
 
-def lines_of(elements: Iterable[Element]) -> list[Line]:
-    """The lines on which the elements' atoms lie, one behind the other."""
-    wanted: dict[tuple[str, int], set[int]] = {}
-    together: dict[tuple[str, int], set[int]] = {}
+def lines_of(elements: Iterable[Element], limits: Mapping[str, int] | None) -> list[Line]:
+    """The lines on which the elements lie, one behind the other.
+
+    Args:
+        elements: of any kind, in any order, also twice.
+        limits: up to where gaps may be read over, by symbol, if that is before the largest address; None if
+            nothing may be touched that is not wanted.
+    """
+    spans: dict[tuple[str, int], set[tuple[int, int]]] = {}
     for element in elements:
-        atoms = atoms_of(element)
-        stride = KINDS[atoms[0][0]].stride
-        key = (atoms[0][0], atoms[0][1] % stride)
-        wanted.setdefault(key, set()).update(address for _, address in atoms)
-        together.setdefault(key, set()).update(address for _, address in atoms[1:])
-    lines = []
-    start = 0
-    for (symbol, parity), addresses in sorted(wanted.items()):
-        line = Line(symbol, KINDS[symbol].stride, sorted(addresses))
-        line.joined = {
-            place for place, address in enumerate(line.addresses) if address in together[symbol, parity]
-        }
-        line.finish(start)
-        start += len(line.addresses)
-        lines.append(line)
+        symbol, first, last = _span(element)
+        spans.setdefault((symbol, first % KINDS[symbol].stride), set()).add((first, last))
+    lines: list[Line] = []
+    for (symbol, _), found in sorted(spans.items()):
+        kind = KINDS[symbol]
+        limit = 0 if limits is None else min(limits.get(symbol, kind.last + 1), kind.last + 1)
+        firsts, lasts = _outermost(found)
+        begin = 0
+        ends = _stretch_ends(firsts, lasts, kind.stride)
+        for end, after in zip(ends, [*ends[1:], 0], strict=True):
+            if after and limits is not None and firsts[end] <= limit:
+                continue  # the gap behind this stretch may be read over
+            within = limits is not None and firsts[begin] <= limit
+            past = lasts[end - 1] + kind.stride
+            lines.append(
+                Line(
+                    symbol,
+                    kind.stride,
+                    firsts[begin:end],
+                    lasts[begin:end],
+                    floor=0 if within else firsts[begin],
+                    bound=max(limit, past) if within else past,
+                    exact=not within,
+                    start=lines[-1].start + len(lines[-1]) if lines else 0,
+                )
+            )
+            begin = end
     return lines
 
 
+def _outermost(spans: set[tuple[int, int]]) -> tuple[list[int], list[int]]:
+    """First and last addresses of the spans that lie within no other."""
+    firsts: list[int] = []
+    lasts: list[int] = []
+    for first, last in sorted(spans, key=lambda span: (span[0], -span[1])):
+        if not lasts or last > lasts[-1]:
+            firsts.append(first)
+            lasts.append(last)
+    return firsts, lasts
+
+
+def _stretch_ends(firsts: list[int], lasts: list[int], stride: int) -> list[int]:
+    count = len(firsts)
+    return [place for place in range(1, count) if firsts[place] > lasts[place - 1] + stride] + [count]
+
+
 class Values:
-    """Answers to planned reads, and the values of the elements in them."""
+    """Answers to planned reads, and the values of the elements in them.
+
+    Two answers may tell of one atom. An element's value is that of the last answer that has it whole, so that
+    its parts are of one scan.
+    """
 
     def __init__(self) -> None:
-        self._atoms: dict[Atom, int] = {}
+        self._answers = 0
+        self._atoms: dict[Atom, dict[int, int]] = {}  # by answer
 
     def take(self, request: Request[Any], answer: tuple[Any, ...]) -> None:
         """Keep what a request's answer tells."""
+        self._answers += 1
         if isinstance(request, ReadMixed):
             for element, value in zip(request.elements, answer, strict=True):
                 self._keep(element, value)
@@ -130,17 +188,14 @@ class Values:
                 self._keep(request.first.after(place), int(value))
 
     def _keep(self, element: Element, value: int) -> None:
-        atoms = atoms_of(element)
-        if len(atoms) == 1:
-            self._atoms[atoms[0]] = value
-            return
-        width = element.kind.bits // len(atoms)
-        mask = (1 << width) - 1
-        for place, atom in enumerate(atoms):
-            self._atoms[atom] = value >> (place * width) & mask
+        for atom, bits in parts_of(element, value).items():
+            self._atoms.setdefault(atom, {})[self._answers] = bits
 
     def __contains__(self, element: object) -> bool:
-        return isinstance(element, Element) and all(atom in self._atoms for atom in atoms_of(element))
+        return isinstance(element, Element) and bool(self._answers_with(element))
+
+    def _answers_with(self, element: Element) -> set[int]:
+        return set.intersection(*(set(self._atoms.get(atom, ())) for atom in atoms_of(element)))
 
     def value(self, element: Element) -> int:
         """The value of an element, unsigned; a discrete is 0 or 1.
@@ -148,6 +203,8 @@ class Values:
         Raises:
             KeyError: no answer told of it.
         """
-        atoms = atoms_of(element)
-        width = element.kind.bits // len(atoms)
-        return sum(self._atoms[atom] << (place * width) for place, atom in enumerate(atoms))
+        answers = self._answers_with(element)
+        if not answers:
+            raise KeyError(element)
+        last = max(answers)
+        return value_of(element, {atom: self._atoms[atom][last] for atom in atoms_of(element)})

@@ -1,24 +1,40 @@
 """The least path from 0 to the end, where some edges share a cost: the mixed requests.
 
 An edge costs its own bytes, and so many mixed words. All mixed words of a path together cost
-``base * ceil(words / capacity)``. That is a shortest path with one resource, solved exactly:
+``base * ceil(words / capacity)``. That is a shortest path with a resource, solved exactly:
 
-- Each word priced at ``base / capacity``, its share of a full request, no path costs less than the shortest
-  one at that price: the shortest rest from every node is a bound from below.
-- Any path is a bound from above; the shortest ones at three prices are tried first.
-- From node to node all (words, cost) are kept that are not dominated, and that could, with the bound of their
-  rest, still beat the best path. Nothing better is ever dropped, so the end holds the least.
+- For each number of mixed requests their words are limited, and the rest of the cost is the edges' own.
+- With a price on each word, no path within the limit costs less than the shortest one at that price less the
+  price of all words allowed: a bound from below. The path found is a bound from above.
+- The best price for a limit is found by walking the corners of (words, cost): a chord between two of them is
+  the next price, until no path lies below the chord.
+- A number of requests whose bound is no less than the best path is done. For the others, from node to node,
+  all (words, cost) are kept that are not dominated and that could, with the bound of their rest, still beat
+  the best path. Nothing better is ever dropped. The same with a few labels a node is done before, but only to
+  find a good path soon.
 """
 
 from __future__ import annotations
 
-from math import ceil
-from typing import TYPE_CHECKING, NamedTuple
+from heapq import nsmallest
+from math import ceil, inf
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-_EPSILON = 1e-6
+    from fatektool.protocol.elements import Element
+
+_EPSILON: Final = 1e-6
+_FEW: Final = 32
+
+
+class Run(NamedTuple):
+    """A run: what it begins with, and how many."""
+
+    symbol: str
+    first: int
+    length: int
 
 
 class Edge(NamedTuple):
@@ -28,16 +44,18 @@ class Edge(NamedTuple):
         to: the node it leads to, farther on than the one it comes from.
         cost: its own bytes.
         words: mixed words.
-        piece: what it stands for.
+        piece: what it stands for: a run, or mixed items.
     """
 
     to: int
     cost: float
     words: int
-    piece: object
+    piece: Run | list[Element]
 
 
-def least_path(end: int, edges: Callable[[int], Iterable[Edge]], base: float, capacity: int) -> list[object]:
+def least_path(
+    end: int, edges: Callable[[int], Iterable[Edge]], base: float, capacity: int
+) -> list[Run | list[Element]]:
     """The pieces of the least path from node 0 to node ``end``.
 
     Args:
@@ -46,23 +64,12 @@ def least_path(end: int, edges: Callable[[int], Iterable[Edge]], base: float, ca
         base: what each mixed request costs.
         capacity: how many words a mixed request holds.
     """
-    graph = _reachable(end, edges)
-    nodes = sorted(graph)
-
-    def total(pieces: list[Edge]) -> float:
-        words = sum(edge.words for edge in pieces)
-        return sum(edge.cost for edge in pieces) + base * ceil(words / capacity)
-
-    price = base / capacity
-    candidates = [_shortest(graph, nodes, end, each) for each in (price, 0.0, base)]
-    best = min((path for path, _ in candidates), key=total)
-    better = _search(
-        graph, nodes, end, base=base, capacity=capacity, rest=candidates[0][1], limit=total(best)
-    )
-    return [edge.piece for edge in better or best]
+    search = _Search(_reachable(end, edges), end, base, capacity)
+    return [edge.piece for edge in search.least()]
 
 
 def _reachable(end: int, edges: Callable[[int], Iterable[Edge]]) -> dict[int, list[Edge]]:
+    """The edges of all nodes that a path from 0 may touch, in order."""
     graph: dict[int, list[Edge]] = {}
     todo = [0]
     while todo:
@@ -70,26 +77,18 @@ def _reachable(end: int, edges: Callable[[int], Iterable[Edge]]) -> dict[int, li
         if node == end or node in graph:
             continue
         graph[node] = list(edges(node))
-        todo += [edge.to for edge in graph[node]]
-    return graph
+        todo += {edge.to for edge in graph[node]}
+    return dict(sorted(graph.items()))
 
 
-def _shortest(
-    graph: dict[int, list[Edge]], nodes: list[int], end: int, price: float
-) -> tuple[list[Edge], dict[int, float]]:
-    """The shortest path at this price a word, and the shortest rest from every node."""
-    rest = {end: 0.0}
-    step: dict[int, Edge] = {}
-    for node in reversed(nodes):
-        step[node] = min(graph[node], key=lambda edge: edge.cost + price * edge.words + rest[edge.to])
-        taken = step[node]
-        rest[node] = taken.cost + price * taken.words + rest[taken.to]
-    path = []
-    at = 0
-    while at != end:
-        path.append(step[at])
-        at = step[at].to
-    return path, rest
+class _Priced(NamedTuple):
+    """The shortest path at a price a word: its words and own cost, and the shortest rest from every node."""
+
+    price: float
+    words: int
+    cost: float
+    path: list[Edge]
+    rest: dict[int, float]
 
 
 class _Label(NamedTuple):
@@ -98,50 +97,135 @@ class _Label(NamedTuple):
     edge: Edge | None
 
 
-def _search(
-    graph: dict[int, list[Edge]],
-    nodes: list[int],
-    end: int,
-    *,
-    base: float,
-    capacity: int,
-    rest: dict[int, float],
-    limit: float,
-) -> list[Edge] | None:
-    """A path that costs less than ``limit``, the least of all; None if there is none."""
-    price = base / capacity
-    labels: dict[int, dict[int, _Label]] = {node: {} for node in [*nodes, end]}
-    labels[0][0] = _Label(0.0, None, None)
-    for node in nodes:
-        for words, label in _undominated(labels[node]):
-            for edge in graph[node]:
-                cost = label.cost + edge.cost
-                used = words + edge.words
-                if (
-                    max(cost + price * used + rest[edge.to], cost + base * ceil(used / capacity))
-                    >= limit - _EPSILON
-                ):
-                    continue
-                known = labels[edge.to].get(used)
-                if known is None or cost < known.cost:
-                    labels[edge.to][used] = _Label(cost, label, edge)
-    found = [(label.cost + base * ceil(words / capacity), label) for words, label in labels[end].items()]
-    if not found:
-        return None
-    cost, last = min(found, key=lambda pair: pair[0])
-    if cost >= limit:
-        return None
+class _Search:
+    def __init__(self, graph: dict[int, list[Edge]], end: int, base: float, capacity: int) -> None:
+        self._graph = graph
+        self._end = end
+        self._base = base
+        self._capacity = capacity
+        self._known: list[_Priced] = []
+        self._best: list[Edge] = []
+        self._limit = inf
+
+    def least(self) -> list[Edge]:
+        """The least path."""
+        dear = 1 + self._base + sum(max(edge.cost for edge in edges) for edges in self._graph.values())
+        self._shortest(dear)  # no path has fewer words
+        most = self._shortest(0.0)
+        self._thin(self._shortest(self._base / self._capacity))
+        stages = dict.fromkeys(range(ceil(most.words / self._capacity) + 1), 0) if self._graph else {}
+        corners: dict[int, _Priced] = {}
+        while left := [count for count in stages if self._bound(count) < self._limit - _EPSILON]:
+            count = min(left, key=lambda count: (stages[count], self._bound(count)))
+            stage = stages[count] = stages[count] + 1
+            if stage == 1:
+                corners[count] = self._corner(count)
+            elif self._beat(count, corners[count], _FEW if stage == 2 else inf):
+                del stages[count]
+        return self._best
+
+    def _bound(self, count: int) -> float:
+        """What no path with so many mixed requests can cost less than."""
+        words = count * self._capacity
+        return self._base * count + max(one.cost + one.price * (one.words - words) for one in self._known)
+
+    def _take(self, path: list[Edge], cost: float) -> None:
+        if cost < self._limit - _EPSILON:
+            self._best, self._limit = path, cost
+
+    def _shortest(self, price: float) -> _Priced:
+        rest = {self._end: 0.0}
+        step: dict[int, Edge] = {}
+        for node in reversed(self._graph):
+            least = inf
+            for edge in self._graph[node]:
+                to, cost, words, _ = edge
+                total = cost + price * words + rest[to]
+                if total < least:
+                    least = total
+                    step[node] = edge
+            rest[node] = least
+        path = []
+        at = 0
+        while at != self._end:
+            path.append(step[at])
+            at = step[at].to
+        words = sum(edge.words for edge in path)
+        cost = sum(edge.cost for edge in path)
+        self._take(path, cost + self._base * ceil(words / self._capacity))
+        self._known.append(_Priced(price, words, cost, path, rest))
+        return self._known[-1]
+
+    def _thin(self, share: _Priced) -> None:
+        """Drop the edges that no better path has, each word priced at its share of a full request."""
+        begun = dict.fromkeys(self._graph, inf)
+        begun[self._end] = inf
+        begun[0] = 0.0
+        for node, edges in self._graph.items():
+            kept = []
+            for edge in edges:
+                total = begun[node] + edge.cost + share.price * edge.words
+                if total + share.rest[edge.to] < self._limit - _EPSILON:
+                    kept.append(edge)
+                    begun[edge.to] = min(begun[edge.to], total)
+            self._graph[node] = kept
+        self._graph = {node: edges for node, edges in self._graph.items() if edges}
+
+    def _corner(self, count: int) -> _Priced:
+        """The best price for so many mixed requests, or one at which they cannot beat the best path."""
+        words = count * self._capacity
+        while True:
+            light = max((one for one in self._known if one.words <= words), key=lambda one: one.words)
+            heavy = min((one for one in self._known if one.words > words), key=lambda one: one.words)
+            price = (light.cost - heavy.cost) / (heavy.words - light.words)
+            found = self._shortest(price)
+            on_the_chord = found.cost + price * found.words >= light.cost + price * light.words - _EPSILON
+            if on_the_chord or self._bound(count) >= self._limit - _EPSILON:
+                return found
+
+    def _beat(self, count: int, corner: _Priced, width: float) -> bool:
+        """Look for a better path with so many mixed requests; True if there is none left.
+
+        Of each node's labels no more than ``width`` go on, those that look best: few, or all.
+        """
+        most = count * self._capacity
+        price, rest = corner.price, corner.rest
+        slack = self._limit - _EPSILON - self._base * count + price * most
+        labels: dict[int, dict[int, _Label]] = {node: {} for node in self._graph}
+        labels[self._end] = {}
+        labels[0][0] = _Label(0.0, None, None)
+        all_seen = True
+        for node, edges in self._graph.items():
+            kept = _undominated(labels.pop(node))
+            if len(kept) > width:
+                all_seen = False
+                kept = nsmallest(_FEW, kept, key=lambda pair: pair[1].cost + price * pair[0])
+            for words, label in kept:
+                room = slack - label.cost - price * words
+                for edge in edges:
+                    to, cost, more, _ = edge
+                    if cost + price * more + rest[to] >= room or words + more > most:
+                        continue
+                    known = labels[to].get(words + more)
+                    if known is None or label.cost + cost < known.cost:
+                        labels[to][words + more] = _Label(label.cost + cost, label, edge)
+        for label in labels[self._end].values():
+            self._take(_path_of(label), label.cost + self._base * count)
+        return all_seen
+
+
+def _path_of(label: _Label) -> list[Edge]:
     path: list[Edge] = []
-    while last.before is not None and last.edge is not None:
-        path.append(last.edge)
-        last = last.before
+    while label.before is not None and label.edge is not None:
+        path.append(label.edge)
+        label = label.before
     return path[::-1]
 
 
 def _undominated(labels: dict[int, _Label]) -> list[tuple[int, _Label]]:
     """Those that no other label with fewer words and less cost makes useless."""
     kept: list[tuple[int, _Label]] = []
-    least = float("inf")
+    least = inf
     for words in sorted(labels):
         label = labels[words]
         if label.cost < least:

@@ -49,6 +49,7 @@ NUMBERS: Final = frozenset(ValueType) - {ValueType.BOOL, ValueType.HEX}
 """The types whose values are numbers, which can be scaled."""
 _ON: Final = {"on": 1, "true": 1, "1": 1, "off": 0, "false": 0, "0": 0}
 _INTEGER: Final = re.compile(r"[+-]?(0[xX][0-9A-Fa-f]+|0[bB][01]+|[0-9]+)", re.ASCII)
+_HEX: Final = re.compile(r"(0[xX])?[0-9A-Fa-f]+", re.ASCII)
 _LONGEST: Final = 1000
 _REAL: Final = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?", re.ASCII)
 
@@ -109,13 +110,17 @@ def encode(text: str, kind: ValueType | None, bits: int) -> int:
     if kind is ValueType.F32:
         return _float_bits(text)
     if kind is ValueType.HEX:
-        text = "0x" + text.removeprefix("0x").removeprefix("0X")
-    if not _INTEGER.fullmatch(text):
+        if not _HEX.fullmatch(text):
+            raise UsageError(f"value {text!r}: expected hex digits such as 10A5 or 0x10A5")
+        base = 16
+    elif _INTEGER.fullmatch(text):
+        base = 10 if text.lstrip("+-").isdecimal() else 0
+    else:
         raise UsageError(f"value {text!r}: expected a whole number such as 4261, -1 or 0x10A5")
     least, most = _range(kind, bits)
     if len(text) > _LONGEST:
         raise UsageError(f"value {text[:20]}…: expected {least} to {most}")
-    number = int(text, 10 if text.lstrip("+-").isdecimal() else 0)
+    number = int(text, base)
     if not least <= number <= most:
         raise UsageError(
             f"value {text}: expected {least} to {most} for {kind.value if kind else f'{bits} bits'}"

@@ -1,0 +1,214 @@
+"""The ways to cover the elements of a line, as edges between its places.
+
+That every element lies within one run or item, and that an edge leads from each place to every place that one
+can reach, would be enough for the least path. Exchange arguments leave out most edges and keep a least path:
+
+- A run of registers ends behind a stretch of neighbours or at its limit. If it ended within the stretch short
+  of its limit, it could take the next one over from whatever covers it, at no more cost.
+- Registers that are mixed before a run in the same stretch can be swapped with the last ones of that run, if
+  all are alike. So they are mixed only where the stretch's end is as near as one request and the run after it
+  can reach (neither 48 nor 49 holds more than a run), or where they are not alike.
+- A packed run begins at the last multiple of 8 that it can, and ends where the 8 discretes behind it are not
+  wanted, or at its limit. Otherwise it could take over a word, and what begins behind it would begin a word
+  later, if no wanted word lies across the place where that one ends.
+- Discretes are read as such (44, a byte each) only as far as a packed run costs more, or cannot reach.
+- A discrete is an item of its own only where it is alone among its 8: two cost more than their word.
+
+Where nothing may be touched but what is wanted, as in writes, a packed run or word begins and ends with its
+discretes. Between such, or before and behind, they are run or mixed as such, up to a multiple of 8 or the
+stretch's end.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from functools import cache
+from typing import TYPE_CHECKING, Final
+
+from fatektool.planner.paths import Edge, Run
+from fatektool.protocol.commands import MAX_DISCRETES, MAX_READ_WORDS
+from fatektool.protocol.elements import KINDS, Element
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from fatektool.planner.atoms import Line
+    from fatektool.planner.costs import Costs
+
+WORD: Final = 16
+STEP: Final = 8
+
+
+class Edges:
+    """The edges from each place of each line, the places of all lines numbered through as nodes."""
+
+    def __init__(self, lines: list[Line], costs: Costs) -> None:
+        self._lines = lines
+        self._starts = [line.start for line in lines]
+        self._costs = costs
+        self._cuts = cache(self._find_cuts)
+        self.end = lines[-1].start + len(lines[-1])
+
+    def of(self, node: int) -> Iterator[Edge]:
+        """All edges from a place."""
+        number = bisect_right(self._starts, node) - 1
+        line = self._lines[number]
+        place = node - line.start
+        if KINDS[line.symbol].bits > 1:
+            yield from self._register_runs(line, place)
+            yield from self._register_items(line, place)
+        elif line.exact:
+            yield from self._exact_runs(line, place)
+            yield from self._exact_items(line, place)
+        else:
+            yield from self._packed_runs(number, place)
+            yield from self._discrete_runs(line, place)
+            yield from self._discrete_items(line, place)
+
+    def _run(self, line: Line, to: int, symbol: str, first: int, count: int) -> Edge:
+        cost = self._costs.run_base(symbol) + self._costs.run_value(symbol) * count
+        return Edge(line.start + to, cost, 0, Run(symbol, first, count))
+
+    def _item(self, line: Line, to: int, symbol: str, address: int) -> Edge:
+        item = Element(symbol, address)
+        return Edge(line.start + to, self._costs.mixed_item(symbol), item.kind.words, [item])
+
+    # --- registers --------------------------------------------------------------------------------
+
+    def _register_runs(self, line: Line, place: int) -> Iterator[Edge]:
+        kind = KINDS[line.symbol]
+        first = line.firsts[place]
+        to = line.place_past(first + MAX_READ_WORDS // kind.words * kind.stride, place)
+        ends = [to]
+        while to < len(line) and to - 1 > place and line.firsts[to] <= line.lasts[to - 1]:
+            to -= 1  # where elements overlap, the limit may be a bad place to end
+            ends.append(to)
+        ends += line.ends[bisect_right(line.ends, place) : bisect_left(line.ends, to)]
+        for end in ends:
+            yield self._run(line, end, line.symbol, first, (line.lasts[end - 1] - first) // kind.stride + 1)
+
+    def _register_items(self, line: Line, place: int) -> Iterator[Edge]:
+        kind = KINDS[line.symbol]
+        near = 2 * MAX_READ_WORDS // kind.words * kind.stride
+        if not line.uneven and line.rest_of_stretch(place) > near:
+            return
+        first, last = line.firsts[place], line.lasts[place]
+        double = f"D{line.symbol}"
+        if last > first:
+            yield self._item(line, place + 1, double, first)
+            return
+        yield self._item(line, place + 1, line.symbol, first)
+        paired = place + 1 < len(line) and line.lasts[place + 1] == first + 1
+        if paired and kind.words == 1 and line.symbol in "RDF":
+            yield self._item(line, place + 2, double, first)
+
+    # --- discretes, read: gaps and the rest of a word may be read over ------------------------------
+
+    def _find_cuts(self, number: int, phase: int) -> list[tuple[int, int]]:
+        """Where packed runs that begin at ``phase`` modulo 16 may end: address, place behind."""
+        line = self._lines[number]
+        cuts = []
+        for place, last in enumerate(line.lasts, 1):
+            end = last + 1 + (phase - last - 1) % WORD
+            if place < len(line):
+                if line.lasts[place] < end:
+                    continue  # the word holds the next one too
+                if end <= line.firsts[place] < end + STEP and not line.straddled(end + WORD, place):
+                    continue  # it could take the next word over
+            cuts.append((end, place))
+        return cuts
+
+    def _packed_runs(self, number: int, place: int) -> Iterator[Edge]:
+        line = self._lines[number]
+        symbol = f"W{line.symbol}"
+        first = line.firsts[place] // STEP * STEP
+        room = (line.bound - first) // WORD
+        limit = first + min(room, MAX_READ_WORDS) * WORD
+        cuts = self._cuts(number, first % WORD)
+        for at in range(bisect_left(cuts, (line.lasts[place] + 1, 0)), len(cuts)):
+            end, to = cuts[at]
+            if end >= limit:
+                break
+            yield self._run(line, to, symbol, first, (end - first) // WORD)
+        to = line.place_past(limit, place)
+        if to > place:
+            yield self._run(line, to, symbol, first, -(-(line.lasts[to - 1] + 1 - first) // WORD))
+        if room < MAX_READ_WORDS and limit + STEP <= line.bound and first >= STEP:
+            beyond = line.place_past(limit + STEP, place)
+            if beyond > to:  # what a run reaches that begins 8 earlier, and ends where the PLC does
+                yield self._run(line, beyond, symbol, first - STEP, room + 1)
+
+    def _discrete_runs(self, line: Line, place: int) -> Iterator[Edge]:
+        symbol, packed = line.symbol, f"W{line.symbol}"
+        value, word = self._costs.run_value(symbol), self._costs.run_value(packed)
+        ahead = self._costs.run_base(packed) - self._costs.run_base(symbol)
+        first = line.firsts[place]
+        begin = first // STEP * STEP
+        # Beyond so many discretes a packed run costs no more, and up to there it can reach.
+        dear = (ahead + word) / (value - word / WORD) if value * WORD > word else MAX_DISCRETES
+        near = line.place_past(first + min(int(dear) + 1, MAX_DISCRETES), place)
+        unpacked = max(line.place_past(line.bound // STEP * STEP, place), near)
+        limit = line.place_past(first + MAX_DISCRETES, place)
+        for to in (*range(place + 1, near + 1), *range(unpacked + 1, limit + 1)):
+            last = line.lasts[to - 1]
+            if to < len(line) and line.firsts[to] == last + 1 and line.firsts[to] % STEP:
+                continue  # it could take the next one over
+            words = (last - begin) // WORD + 1
+            if begin + words * WORD > line.bound or value * (last + 1 - first) < ahead + word * words:
+                yield self._run(line, to, symbol, first, last + 1 - first)
+
+    def _discrete_items(self, line: Line, place: int) -> Iterator[Edge]:
+        symbol, first = line.symbol, line.firsts[place]
+        begin = first // STEP * STEP
+        reached = place
+        for prefix, bits in (("W", WORD), ("DW", 2 * WORD)):
+            address = min(begin, (line.bound - bits) // STEP * STEP)
+            if begin - address > STEP or address < 0:
+                continue
+            to = line.place_past(address + bits, place)
+            if to > reached:
+                yield self._item(line, to, prefix + symbol, address)
+                reached = to
+        next_to = place + 1 < len(line) and line.firsts[place + 1] < min(
+            begin + STEP, line.bound // STEP * STEP
+        )
+        item = self._costs.mixed_item
+        if line.lasts[place] == first and not (next_to and 2 * item(symbol) >= item(f"W{symbol}")):
+            yield self._item(line, place + 1, symbol, first)
+
+    # --- discretes, and nothing but those wanted ------------------------------------------------------
+
+    def _exact_runs(self, line: Line, place: int) -> Iterator[Edge]:
+        first = line.firsts[place]
+        limit = line.place_past(first + MAX_DISCRETES, place)
+        ends = {limit}
+        for address in range(first // STEP * STEP + STEP, min(first + MAX_DISCRETES, line.bound), STEP):
+            to = line.place_past(address, place)
+            if to > place and line.lasts[to - 1] + 1 == address:
+                ends.add(to)
+        for to in ends:
+            yield self._run(line, to, line.symbol, first, line.lasts[to - 1] + 1 - first)
+        if first % STEP:
+            return
+        for words in range(min((line.bound - first) // WORD, MAX_READ_WORDS), 0, -1):
+            to = line.place_past(first + words * WORD, place)
+            if to > place and line.lasts[to - 1] + 1 == first + words * WORD:
+                yield self._run(line, to, f"W{line.symbol}", first, words)
+                return
+
+    def _exact_items(self, line: Line, place: int) -> Iterator[Edge]:
+        symbol, first = line.symbol, line.firsts[place]
+        if first % STEP == 0:
+            for prefix, bits in (("W", WORD), ("DW", 2 * WORD)):
+                to = line.place_past(first + bits, place)
+                if to > place and line.lasts[to - 1] + 1 == first + bits:
+                    yield self._item(line, to, prefix + symbol, first)
+        to = place
+        while (
+            to < len(line) and line.firsts[to] == line.lasts[to] and (to == place or line.firsts[to] % STEP)
+        ):
+            to += 1
+        if to > place:
+            cost = self._costs.mixed_item(symbol) * (to - place)
+            items = [Element(symbol, line.firsts[at]) for at in range(place, to)]
+            yield Edge(line.start + to, cost, to - place, items)
