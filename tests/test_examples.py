@@ -16,6 +16,7 @@ EXAMPLES = Path(__file__).parent.parent / "examples"
 def run(folder: Path, *command: str) -> subprocess.CompletedProcess[str]:
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     environment = os.environ | {"PATH": path, "FATEKTOOL_LOCK_DIR": str(folder)}
+    environment.pop("PYTEST_ADDOPTS", None)  # they are for the tests around this one
     return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
 
 
