@@ -46,7 +46,7 @@ class BinarySizes(FaconCodec):
             case WriteMixed(items):
                 data = 1 + sum(_element(element) + _value(element) for element, _ in items)
             case _:
-                raise NotImplementedError
+                raise TypeError(f"{type(request).__name__} is nothing that a planner asks for")
         return bytes([station]) * (FRAMING + STATION_AND_COMMAND + data)
 
     def answer_bytes(self, request: Request[Any]) -> int:
