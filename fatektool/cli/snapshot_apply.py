@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fatektool.client import Plc
-    from fatektool.jobs.registers import NotTaken
+    from fatektool.jobs.register_writes import NotTaken
     from fatektool.jobs.snapshot import Snapshot
 
 

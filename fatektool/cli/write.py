@@ -11,7 +11,7 @@ from fatektool.cli.options import Connection, connection_options
 from fatektool.cli.read import shown, warn_of
 from fatektool.errors import DataError, LineError, PlcError
 from fatektool.jobs.assignment import parse_assignments
-from fatektool.jobs.registers import write_elements
+from fatektool.jobs.register_writes import write_elements
 from fatektool.protocol.values import Value, decode
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING
 
 from fatektool.errors import DataError, LineError, RestoreIncomplete
-from fatektool.jobs.registers import NotTaken, write_elements
+from fatektool.jobs.register_writes import NotTaken, write_elements
 from fatektool.jobs.selection import Item, places_of
 from fatektool.jobs.snapshot import Snapshot, raw_of, take_snapshot
 from fatektool.jobs.snapshot_spec import SpecItem

@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fatektool.errors import LineError, UsageError
-from fatektool.jobs.registers import read_disabled, read_elements, write_elements
+from fatektool.jobs.register_writes import write_elements
+from fatektool.jobs.registers import read_disabled, read_elements
 from fatektool.jobs.selection import parse_items
 from fatektool.protocol.elements import Element
 from fatektool.simulator.models import MODELS

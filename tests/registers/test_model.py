@@ -9,7 +9,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from fatektool.errors import LineError
-from fatektool.jobs.registers import read_disabled, read_elements, write_elements
+from fatektool.jobs.register_writes import write_elements
+from fatektool.jobs.registers import read_disabled, read_elements
 from fatektool.protocol.elements import KINDS, Element
 
 from .plant import small

@@ -1,0 +1,154 @@
+"""Writing elements of any kind: in the fewest bytes, read back, what did not take named with its reason."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from fatektool.errors import PlcRefused, UsageError
+from fatektool.jobs.registers import by_request, named, read_disabled, read_elements, turnaround
+from fatektool.jobs.selection import overlapping
+from fatektool.planner import plan_writes
+from fatektool.planner.atoms import atoms_of
+from fatektool.protocol.commands import (
+    Request,
+    WriteDiscretes,
+    WriteRegisters,
+)
+from fatektool.protocol.elements import Element
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fatektool.client import Plc
+
+
+@dataclass(frozen=True, slots=True)
+class NotTaken:
+    """A write that did not take.
+
+    Attributes:
+        element: which.
+        wanted: what was written, raw.
+        got: what it holds instead, raw; None if it cannot be read.
+        reason: why, as far as that is known.
+    """
+
+    element: Element
+    wanted: int
+    got: int | None
+    reason: str
+
+
+def write_elements(plc: Plc, items: Sequence[tuple[Element, int]]) -> list[NotTaken]:
+    """Write elements of any kind, read all back, and tell what did not take.
+
+    Args:
+        plc: the PLC.
+        items: elements with raw, unsigned values.
+
+    Raises:
+        UsageError: two of them share a discrete or register; nothing was sent.
+        LineError: no answer; some of them may be written.
+    """
+    both = overlapping(element for element, _ in items)
+    if both is not None:
+        raise UsageError(f"{both[0]} and {both[1]} overlap: what should be there?")
+    refused: dict[Element, str] = {}
+    _write(plc, list(items), refused, looked=False)
+    found = read_elements(plc, [element for element, _ in items])
+    failed = [
+        (element, wanted)
+        for element, wanted in items
+        if found.values.get(element) != wanted or element in refused
+    ]
+    acknowledged = [
+        (element, wanted ^ found.values[element])
+        for element, wanted in failed
+        if element not in refused and element in found.values
+    ]
+    reasons = found.errors | _why(plc, acknowledged) | refused
+    return [
+        NotTaken(element, wanted, found.values.get(element), reasons[element]) for element, wanted in failed
+    ]
+
+
+def _write(plc: Plc, items: list[tuple[Element, int]], refused: dict[Element, str], *, looked: bool) -> None:
+    """Write all, and take apart what is refused.
+
+    Args:
+        plc: the PLC.
+        items: elements with values.
+        refused: gets what the PLC says of those that it refuses.
+        looked: True if all of them can be read, so that it is the writing that is refused.
+    """
+    requests = [_write_alone(*items[0])] if len(items) == 1 else _plan(plc, items)
+    failed = []
+    said = ""
+    for request in requests:
+        try:
+            plc.link.ask(request)
+        except PlcRefused as error:
+            failed.append(request)
+            said = error.message
+    if not failed:
+        return
+    if len(items) == 1:
+        refused[items[0][0]] = said
+        return
+    values = dict(items)
+    groups = by_request(sorted(values), failed)
+    if len(groups) > len(failed):
+        groups.pop()  # those whose requests were not refused
+    left = [element for group in groups for element in group]
+    if not looked:
+        errors = read_elements(plc, left).errors
+        refused |= errors
+        groups = [[element for element in group if element not in errors] for group in groups]
+    for group in groups:
+        pairs = [(element, values[element]) for element in group]
+        parts = [pairs[: len(pairs) // 2], pairs[len(pairs) // 2 :]] if looked else [pairs]
+        for part in parts:
+            if part:
+                _write(plc, part, refused, looked=True)
+
+
+def _plan(plc: Plc, items: list[tuple[Element, int]]) -> list[Request[None]]:
+    return plan_writes(items, plc.link.codec, turnaround=turnaround(plc))
+
+
+def _write_alone(element: Element, value: int) -> Request[None]:
+    if element.kind.bits == 1:
+        return WriteDiscretes(element, (bool(value),))
+    return WriteRegisters(element, (value,))
+
+
+def _why(plc: Plc, failed: list[tuple[Element, int]]) -> dict[Element, str]:
+    """Why writes that were acknowledged did not take.
+
+    Args:
+        plc: the PLC.
+        failed: elements, and the bits that are not as they were written.
+    """
+    suspects: dict[Element, list[Element]] = {}
+    for element, wrong in failed:
+        atoms = atoms_of(element)
+        if element.kind.bits == len(atoms):
+            suspects[element] = [Element(*atom) for place, atom in enumerate(atoms) if wrong >> place & 1]
+    flags, _ = read_disabled(plc, [each for some in suspects.values() for each in some])
+    reasons = {}
+    for element, _ in failed:
+        held = [each for each in suspects.get(element, ()) if flags.get(each)]
+        if held:
+            names = "it is" if held == [element] else f"{named(map(str, held))} {'are' if held[1:] else 'is'}"
+            reasons[element] = (
+                f"{names} disabled: 'fatektool discrete set' and 'reset' still switch it, "
+                f"'discrete enable' gives it back"
+            )
+        elif element.symbol.endswith("X"):
+            reasons[element] = "an input follows its terminal unless it is disabled"
+        else:
+            reasons[element] = (
+                "acknowledged, but it holds something else: read-only, or the program writes it too"
+            )
+    return reasons
