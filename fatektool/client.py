@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fatektool.batch import ask_all
-from fatektool.errors import PlcError
+from fatektool.errors import DataError, PlcError
 from fatektool.protocol.commands import (
     Control,
     ControlDiscrete,
@@ -26,6 +26,7 @@ from fatektool.protocol.commands import (
     WritePage,
     WriteRegisters,
 )
+from fatektool.protocol.status import DETAILED_BYTES, RawStatus
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -77,8 +78,19 @@ class Plc:
         return self.link.ask(ReadBriefStatus())
 
     def detailed_status(self) -> DetailedStatus:
-        """53."""
-        return self.link.ask(ReadDetailedStatus())
+        """53.
+
+        Raises:
+            DataError: the answer has a layout that no paper describes.
+        """
+        status = self.link.ask(ReadDetailedStatus())
+        if isinstance(status, RawStatus):
+            raise DataError(
+                f"detailed status (53): expected {DETAILED_BYTES} bytes, got {len(status.raw)}, "
+                f"and no paper says what they mean",
+                hint="'fatektool status' shows them",
+            )
+        return status
 
     def run(self) -> None:
         """41, then read the mode back, as on some lines an acknowledgement proves nothing.

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from fatektool.client import Plc
+from fatektool.connection import CODECS
 from fatektool.link import Link
-from fatektool.protocol.facon import FACON
 from fatektool.simulator.build import build_simulation
 from fatektool.transport.base import LineSettings
 from fatektool.transport.memory import MemoryTransport
@@ -29,10 +29,12 @@ class Simulated:
         return self.simulation.plcs[1]
 
 
-def simulated(*, retries: int = 3, timeout_s: float = 0.5, **options: Any) -> Simulated:
+def simulated(
+    *, protocol: str = "facon", retries: int = 3, timeout_s: float = 0.5, **options: Any
+) -> Simulated:
     """A PLC of ``build_simulation(**options)`` and a client for its station 1."""
-    simulation = build_simulation(**options)
+    simulation = build_simulation(protocol=protocol, **options)
     line = LineSettings()
     transport = MemoryTransport(simulation.line())
-    link = Link(transport, FACON, 1, line, timeout_s=timeout_s, retries=retries)
+    link = Link(transport, CODECS[protocol], 1, line, timeout_s=timeout_s, retries=retries)
     return Simulated(Plc(link, "sim:"), simulation)

@@ -16,6 +16,7 @@ from fatektool.jobs.backup import backup
 from fatektool.jobs.times import stamp, utc
 from fatektool.program.archive import Backup, save_backup
 from fatektool.program.files import require_place, write_whole
+from fatektool.protocol.commands import Command
 
 STDOUT = Path("-")
 
@@ -47,7 +48,7 @@ def backup_command(
     for place in (path, raw):
         if place is not None and place != STDOUT:
             require_place(place, overwrite=force)
-    with connection.open(voice) as plc, voice.progress() as bar:
+    with connection.open(voice, needs=(Command.READ_PAGE,)) as plc, voice.progress() as bar:
         clock = plc.link.transport.clock
         began = clock()
         found = backup(plc, single_pass=single_pass, any_header=any_header, progress=bar.update)

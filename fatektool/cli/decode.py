@@ -12,8 +12,8 @@ import click
 from fatektool.cli.options import PROTOCOLS, voice_options
 from fatektool.errors import DataError, UsageError
 from fatektool.program.files import read_bounded
-from fatektool.protocol.explain import Explanation, Role
-from fatektool.protocol.facon_explain import FaconExplainer
+from fatektool.protocol.explain import Explainer, Explanation, Role
+from fatektool.protocol.explainers import EXPLAINERS
 from fatektool.transport.trace import RECEIVED
 from fatektool.transport.trace_reader import TraceRecord, read_trace
 
@@ -44,26 +44,31 @@ def decode_command(
 
     They are given as HEX, or come from a trace FILE (.ndjson, .pcap).
     """
+    explainer = EXPLAINERS[protocol]()
     found: list[tuple[TraceRecord | None, Explanation]] = []
     try:
-        for pair in _explained(frames, _ROLES.get(role or "", Role.EITHER)):
+        for pair in _explained(explainer, frames, _ROLES.get(role or "", Role.EITHER)):
             found.append(pair)  # noqa: PERF402  # so that what came before an error is kept
     except DataError:
         if found and not voice.json:  # what stands before the damage is worth a look
-            voice.show({}, _lines(found))
+            voice.show({}, _lines(found, binary=explainer.binary))
         raise
     if not any(explanation.command is not None for _, explanation in found):
-        raise DataError("no frame in it: expected bytes from STX (02) to ETX (03)")
+        others = " or ".join(name for name in EXPLAINERS if name != protocol)
+        raise DataError(
+            f"no {protocol} frame in it: expected {explainer.form}", hint=f"or is it --protocol {others}?"
+        )
     document = {
         "schema": "fatektool.decode/1",
         "protocol": protocol,
         "frames": [_document(record, explanation) for record, explanation in found],
     }
-    voice.show(document, _lines(found))
+    voice.show(document, _lines(found, binary=explainer.binary))
 
 
-def _explained(frames: tuple[str, ...], role: Role) -> Iterator[tuple[TraceRecord | None, Explanation]]:
-    explainer = FaconExplainer()
+def _explained(
+    explainer: Explainer, frames: tuple[str, ...], role: Role
+) -> Iterator[tuple[TraceRecord | None, Explanation]]:
     for record in _records(frames):
         typed = record.time == ""
         known = role if typed else _direction(record)
@@ -110,7 +115,7 @@ def _document(record: TraceRecord | None, explanation: Explanation) -> dict[str,
     }
 
 
-def _lines(found: Iterable[tuple[TraceRecord | None, Explanation]]) -> Iterator[str]:
+def _lines(found: Iterable[tuple[TraceRecord | None, Explanation]], *, binary: bool) -> Iterator[str]:
     for number, (record, explanation) in enumerate(found):
         if number:
             yield ""
@@ -118,7 +123,7 @@ def _lines(found: Iterable[tuple[TraceRecord | None, Explanation]]) -> Iterator[
         size = len(explanation.raw)
         yield f"{when}{explanation.role.value}, {size} bytes"
         for field in explanation.fields:
-            shown = _text(field.raw)
+            shown = field.raw.hex(" ").upper() if binary else _text(field.raw)
             cut = shown if len(shown) <= 24 else f"{shown[:20]}… ({len(field.raw)})"
             yield f"  {field.name:<16}  {cut:<24}  {field.meaning}".rstrip()
         if explanation.fault:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from fatektool.jobs.times import utc
+from fatektool.protocol.status import DetailedStatus, RawStatus
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -50,9 +51,19 @@ def status_document(report: StatusReport) -> dict[str, Any]:
         "station": report.station,
         "protocol": report.protocol,
         "status": report.flags.document(),
-        "system": None if report.system is None else report.system.document(),
+        "system": _system(report),
         "brief": {"status2": report.brief.status2, "model": report.brief.model},
     }
+
+
+def _system(report: StatusReport) -> dict[str, Any] | None:
+    """What 53 told, marked where the layout is assumed, and as it came where there is none."""
+    match report.detailed:
+        case DetailedStatus(system=system, assumed=assumed):
+            return ({"layout": "assumed"} if assumed else {}) | system.document()
+        case RawStatus(raw):
+            return {"layout": "raw", "raw": raw.hex().upper()}
+    return None
 
 
 def backup_summary(backup: Backup) -> dict[str, Any]:

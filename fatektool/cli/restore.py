@@ -24,6 +24,7 @@ from fatektool.jobs.restore import (
 from fatektool.program.archive import load_backup
 from fatektool.program.files import require_folder
 from fatektool.program.image import ranges
+from fatektool.protocol.commands import Command
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -71,7 +72,10 @@ def restore_command(
     backup = load_backup(file)
     folder = None if no_safety_backup else require_folder(safety_dir or file.parent)
     options = RestoreOptions(stop, run, changed_only, rollback, any_header, single_pass)
-    with connection.open(voice) as plc, voice.progress() as bar:
+    with (
+        connection.open(voice, needs=(Command.READ_PAGE, Command.WRITE_PAGE)) as plc,
+        voice.progress() as bar,
+    ):
         clock = plc.link.transport.clock
         began = clock()
         plan = plan_restore(plc, backup, options, progress=bar.update)

@@ -10,6 +10,7 @@ from fatektool.cli.documents import status_document
 from fatektool.cli.options import Connection, connection_options
 from fatektool.cli.output import Voice, table
 from fatektool.jobs.status import StatusReport, read_status
+from fatektool.protocol.status import DetailedStatus, RawStatus, System
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -33,12 +34,23 @@ def _rows(report: StatusReport) -> Iterator[tuple[str, object]]:
     yield "ladder checksum", "ERROR: restore a good backup" if flags.ladder_checksum_error else "ok"
     yield "watchdog", "TIMED OUT" if flags.watchdog_timeout else "ok"
     yield "emergency stop", "ACTIVE" if flags.emergency_stop else "no"
-    yield "ROM pack", "in use: the program cannot be written" if flags.rom_pack else "no"
+    if report.brief.m_series:
+        yield "memory card", "yes" if flags.rom_pack else "no"
+    else:
+        yield "ROM pack", "in use: the program cannot be written" if flags.rom_pack else "no"
     yield "ID", "set" if flags.id_set else "not set"
-    yield "model code", f"{report.brief.status2:02X}, {report.brief.model or 'not in the paper'}"
-    system = report.system
-    if system is None:
-        return
+    if not report.brief.m_series:
+        yield "model code", f"{report.brief.status2:02X}, {report.brief.model or 'not in the paper'}"
+    match report.detailed:
+        case DetailedStatus(system=system, assumed=assumed):
+            if assumed:
+                yield "detailed status", "FACON's layout assumed: no paper describes an M-series PLC's"
+            yield from _system_rows(system)
+        case RawStatus(raw):
+            yield "detailed status", f"{len(raw)} bytes that no paper describes: {raw.hex(' ').upper()}"
+
+
+def _system_rows(system: System) -> Iterator[tuple[str, object]]:
     yield "main unit", f"type {system.unit_type:02X}, {system.unit_type_name or 'not in the paper'}"
     points = system.points
     yield "main unit points", f"code {system.main_unit_points:02X}, {points or 'not in the paper'}"

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fatektool.jobs.times import utc
+from fatektool.protocol.commands import ReadDetailedStatus
 
 if TYPE_CHECKING:
     from fatektool.client import Plc
-    from fatektool.protocol.status import BriefStatus, StatusFlags, System
+    from fatektool.protocol.status import BriefStatus, DetailedStatus, RawStatus, StatusFlags, System
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,9 +21,9 @@ class StatusReport:
         time: when it was read, UTC.
         target: as the user named it.
         station: 1 to 254.
-        protocol: ``facon``.
+        protocol: ``facon`` or ``mseries``.
         brief: the answer to 40.
-        system: what 53 tells; None if it was not asked.
+        detailed: the answer to 53; None if it was not asked.
     """
 
     time: str
@@ -30,7 +31,12 @@ class StatusReport:
     station: int
     protocol: str
     brief: BriefStatus
-    system: System | None
+    detailed: DetailedStatus | RawStatus | None
+
+    @property
+    def system(self) -> System | None:
+        """What 53 tells; None if it was not asked, or nobody says what its answer means."""
+        return getattr(self.detailed, "system", None)
 
     @property
     def flags(self) -> StatusFlags:
@@ -50,5 +56,5 @@ def read_status(plc: Plc, *, brief: bool = False) -> StatusReport:
         PlcRefused: the PLC refuses one of them.
     """
     short = plc.brief_status()
-    system = None if brief else plc.detailed_status().system
-    return StatusReport(utc(), plc.target, plc.link.station, plc.link.codec.name, short, system)
+    detailed = None if brief else plc.link.ask(ReadDetailedStatus())
+    return StatusReport(utc(), plc.target, plc.link.station, plc.link.codec.name, short, detailed)

@@ -8,8 +8,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
 
+from fatektool.errors import UsageError
+from fatektool.protocol.plc_errors import PROGRAM_COMMANDS
+
 if TYPE_CHECKING:
-    from fatektool.protocol.commands import Request
+    from fatektool.protocol.commands import Command, Request
 
 A = TypeVar("A")
 
@@ -43,6 +46,12 @@ class Decoder(Protocol):
     def next_frame(self) -> Frame | None:
         """Give the next whole frame, or None."""
 
+    def expect_no_more(self) -> bool:
+        """The time for what was fed is over; True if ``next_frame`` may find something in it now.
+
+        A frame that began and has not ended is none then, and another may stand behind its beginning.
+        """
+
     def clear(self) -> int:
         """Forget what was fed and not yet given; return how many bytes that was."""
 
@@ -53,6 +62,22 @@ class Codec(Protocol):
     @property
     def name(self) -> str:
         """The name of ``--protocol``."""
+
+    @property
+    def commands(self) -> frozenset[Command]:
+        """The commands that its paper has."""
+
+    @property
+    def loopback_alphabet(self) -> bytes:
+        """The bytes that a loopback (4E) may carry over any line that this protocol is spoken on."""
+
+    @property
+    def data_bits(self) -> int:
+        """The fewest data bits of a serial line that carry its frames, 7 or 8."""
+
+    @property
+    def default_tcp_port(self) -> int | None:
+        """The port of TCP and UDP unless one is named; None if no paper says one."""
 
     def decoder(self) -> Decoder:
         """A new decoder for one stream."""
@@ -80,7 +105,25 @@ class Codec(Protocol):
         """
 
     def answer_bytes(self, request: Request[A]) -> int:
-        """Length of the frame that answers this request, in bytes on the wire."""
+        """Length in bytes of the frame that answers this request; the likely one if it varies."""
 
     def echo_may_pass(self, request: Request[A]) -> bool:
         """True if the request's own echo could be taken for its answer."""
+
+
+def require_commands(codec: Codec, *needed: Command) -> None:
+    """Check that a protocol has these commands, before anything is opened or sent.
+
+    Raises:
+        UsageError: it lacks one.
+    """
+    missing = [command for command in needed if command not in codec.commands]
+    if not missing:
+        return
+    listed = " and ".join(f"{command.words} ({command:02X})" for command in missing)
+    if PROGRAM_COMMANDS.issuperset(missing):
+        raise UsageError(
+            f"{codec.name} has no program commands: its paper does not list {listed}",
+            hint="save the program with the vendor's software; 'fatektool snapshot --all' saves the data",
+        )
+    raise UsageError(f"{codec.name} has no such command: its paper does not list {listed}")

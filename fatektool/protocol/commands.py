@@ -21,7 +21,7 @@ from enum import IntEnum
 from typing import TYPE_CHECKING, ClassVar, Final, Generic, TypeVar
 
 from fatektool.errors import UsageError
-from fatektool.protocol.status import BriefStatus, DetailedStatus
+from fatektool.protocol.status import BriefStatus, DetailedStatus, RawStatus
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -258,8 +258,8 @@ class WritePage(Request[None]):
 
 
 @dataclass(frozen=True, slots=True)
-class ReadDetailedStatus(Request[DetailedStatus]):
-    """53: 64 status bytes, the ladder size among them."""
+class ReadDetailedStatus(Request[DetailedStatus | RawStatus]):
+    """53: 64 status bytes, the ladder size among them; raw bytes where nobody says what they mean."""
 
     command: ClassVar[Command] = Command.DETAILED_STATUS
 

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import TYPE_CHECKING, ClassVar, Protocol
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 
 class Role(Enum):
@@ -51,3 +55,23 @@ class Explanation:
     command: int | None = None
     checksum_ok: bool | None = None
     fault: str | None = None
+
+
+class Explainer(Protocol):
+    """Explains a conversation of one protocol, piece by piece, in the order it was spoken.
+
+    Attributes:
+        form: what a frame looks like, in words.
+        binary: True if its bytes are better shown as hex than as characters.
+    """
+
+    form: ClassVar[str]
+    binary: ClassVar[bool]
+
+    def explain(self, data: bytes, role: Role = Role.EITHER) -> Iterator[Explanation]:
+        """Explain all frames in a piece of the conversation, and the bytes that are none.
+
+        Args:
+            data: the bytes.
+            role: REQUEST or ANSWER if the direction is known.
+        """

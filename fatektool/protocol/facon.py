@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Final, TypeVar
 from fatektool.errors import FrameError, UsageError
 from fatektool.protocol import facon_data
 from fatektool.protocol.codec import Frame
+from fatektool.protocol.commands import Command
 
 if TYPE_CHECKING:
     from fatektool.protocol.commands import Request
@@ -80,6 +81,10 @@ class FaconDecoder:
         self._buffer.clear()
         return count
 
+    def expect_no_more(self) -> bool:
+        """False: behind a frame that has not ended nothing can stand, as STX would have begun another."""
+        return False
+
     def next_frame(self) -> Frame | None:
         """Give the next frame, or None when more bytes are needed.
 
@@ -134,6 +139,10 @@ class FaconCodec:
     """FACON ASCII as a ``Codec``."""
 
     name: Final = "facon"
+    commands: Final[frozenset[Command]] = frozenset(Command)
+    loopback_alphabet: Final = bytes(char for char in range(128) if char not in STX + ETX)
+    data_bits: Final = 7
+    default_tcp_port: Final = 500
 
     def decoder(self) -> FaconDecoder:
         """A new decoder for one stream."""

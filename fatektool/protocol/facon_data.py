@@ -49,7 +49,7 @@ from fatektool.protocol.facon_text import (
     value_text,
     words_text,
 )
-from fatektool.protocol.plc_errors import refusal
+from fatektool.protocol.plc_errors import asked, refusal
 from fatektool.protocol.status import BRIEF_BYTES, DETAILED_BYTES, BriefStatus, DetailedStatus
 
 if TYPE_CHECKING:
@@ -170,12 +170,6 @@ def _mixed_values(request: ReadMixed, values: tuple[int, ...]) -> bytes:
     return b"".join(map(value_text, request.elements, values))
 
 
-def _brief_bytes(answer: BriefStatus) -> bytes:
-    flags = answer.flags
-    byte = sum(getattr(flags, name) << bit for bit, name in enumerate(flags.__slots__))
-    return bytes([byte, answer.status2, answer.status3])
-
-
 class _Fields(NamedTuple):
     """How one command is written. ``chars`` counts an answer's characters after the error character."""
 
@@ -206,7 +200,7 @@ _FIELDS: Final[dict[int, _Fields]] = {
         _parse_empty(ReadBriefStatus),
         lambda _: 2 * BRIEF_BYTES,
         lambda _, chars: BriefStatus.parse(unhex(chars)),
-        lambda _, answer: to_hex(_brief_bytes(answer)),
+        lambda _, answer: to_hex(answer.to_bytes()),
     ),
     Command.RUN_STOP: _acknowledged(lambda r: b"1" if r.run else b"0", _parse_run_stop),
     Command.CONTROL_DISCRETE: _acknowledged(
@@ -330,8 +324,8 @@ def answer_data(request: Request[A], answer: A) -> bytes:
 def echo_may_pass(request: Request[A]) -> bool:
     """True if a request's own data reads as an answer to it.
 
-    The echo of 4E and of STOP reads as a good answer, so does that of one DD or DF under 46 and of some under
-    48, which are all hex digits; that of RUN reads as error 1.
+    The echo of 4E and of STOP reads as a good answer, so does that of one DD under 46 and of some under 48,
+    which are all hex digits; that of RUN reads as error 1.
     """
     try:
         parse_answer(request, request_data(request))
@@ -340,15 +334,3 @@ def echo_may_pass(request: Request[A]) -> bool:
     except PlcRefused:
         return True
     return True
-
-
-def asked(request: Request[A]) -> str:
-    """What a request asks, in words: ``read program page 5``, ``read registers R12``."""
-    if isinstance(request, RunStop):
-        return "RUN" if request.run else "STOP"
-    words = request.command.words
-    for name in ("page", "first", "element"):
-        subject = getattr(request, name, None)
-        if subject is not None:
-            return f"{words} {subject}"
-    return words

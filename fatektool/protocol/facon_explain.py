@@ -7,7 +7,7 @@ values.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from fatektool.errors import FrameError
 from fatektool.protocol.commands import COMMAND_WORDS, Command
@@ -29,6 +29,9 @@ _PIECE: Final = 1 << 15
 
 class FaconExplainer:
     """Explains a conversation, piece by piece, in the order it was spoken."""
+
+    form: ClassVar[str] = "bytes from STX (02) to ETX (03)"
+    binary: ClassVar[bool] = False
 
     def __init__(self) -> None:
         self._last: dict[tuple[int, int], Request[Any]] = {}

@@ -5,10 +5,15 @@ FACON paper, section 3; the M-series paper has the same codes but 3.
 
 from __future__ import annotations
 
-from typing import Final
+from typing import TYPE_CHECKING, Final, TypeVar
 
 from fatektool.errors import PlcRefused
-from fatektool.protocol.commands import Command
+from fatektool.protocol.commands import Command, RunStop
+
+if TYPE_CHECKING:
+    from fatektool.protocol.commands import Request
+
+A = TypeVar("A")
 
 MEANINGS: Final = {
     0x2: "illegal value",
@@ -41,7 +46,7 @@ def refusal(code: int, command: int, asked: str) -> PlcRefused:
     """The exception for an error code.
 
     Args:
-        code: 1 to 15.
+        code: 1 to 15 in FACON, 1 to 255 in M-series.
         command: the command's code.
         asked: what was asked, in words: ``read program page 5``.
     """
@@ -55,3 +60,15 @@ def refusal(code: int, command: int, asked: str) -> PlcRefused:
         command=command,
         hint=hint,
     )
+
+
+def asked(request: Request[A]) -> str:
+    """What a request asks, in words: ``read program page 5``, ``read registers R12``."""
+    if isinstance(request, RunStop):
+        return "RUN" if request.run else "STOP"
+    words = request.command.words
+    for name in ("page", "first", "element"):
+        subject = getattr(request, name, None)
+        if subject is not None:
+            return f"{words} {subject}"
+    return words

@@ -10,6 +10,10 @@
 
 16-bit values come high byte first (FACON paper, section 4.2, commands 40 and 53). A code that no
 paper names is shown as a code: real units answer with such.
+
+The M-series paper (section 2.5.1) has the same byte 1 in 40, but for bit 3, which tells of a memory card
+instead of a ROM pack; it reserves bytes 2 and 3. It lists 53 without a layout: an answer of 64 bytes is
+assumed to be FACON's, any other is kept as it is.
 """
 
 from __future__ import annotations
@@ -40,7 +44,7 @@ _COUNTS: Final = struct.Struct(">12H")
 
 @dataclass(frozen=True, slots=True)
 class StatusFlags:
-    """Status byte 1, the same in 40 and 53, bit 0 first."""
+    """Status byte 1, the same in 40 and 53, bit 0 first; ``rom_pack`` is an M-series PLC's memory card."""
 
     running: bool
     battery_low: bool
@@ -55,6 +59,11 @@ class StatusFlags:
         """Read the seven flags of one byte; bit 7 is reserved."""
         return cls(*(bool(byte >> bit & 1) for bit in range(7)))
 
+    @property
+    def byte(self) -> int:
+        """The flags as one byte again."""
+        return sum(getattr(self, name) << bit for bit, name in enumerate(self.__slots__))
+
     def document(self) -> dict[str, bool]:
         """The flags as JSON has them."""
         return {name: getattr(self, name) for name in self.__slots__}
@@ -62,19 +71,27 @@ class StatusFlags:
 
 @dataclass(frozen=True, slots=True)
 class BriefStatus:
-    """The answer to 40."""
+    """The answer to 40.
+
+    Attributes:
+        flags: byte 1.
+        status2: byte 2, a model's code.
+        status3: byte 3, reserved.
+        m_series: True if bit 3 of byte 1 is a memory card, and byte 2 is reserved too.
+    """
 
     flags: StatusFlags
     status2: int
     status3: int
+    m_series: bool = False
 
     @property
     def model(self) -> str | None:
         """The model that status byte 2 names, None for a code the paper does not list."""
-        return MODELS.get(self.status2)
+        return None if self.m_series else MODELS.get(self.status2)
 
     @classmethod
-    def parse(cls, data: bytes) -> BriefStatus:
+    def parse(cls, data: bytes, *, m_series: bool = False) -> BriefStatus:
         """Read the three bytes of a 40 answer.
 
         Raises:
@@ -82,7 +99,11 @@ class BriefStatus:
         """
         if len(data) != BRIEF_BYTES:
             raise FrameError(f"brief status: expected {BRIEF_BYTES} bytes, got {len(data)}", raw=data)
-        return cls(StatusFlags.parse(data[0]), data[1], data[2])
+        return cls(StatusFlags.parse(data[0]), data[1], data[2], m_series)
+
+    def to_bytes(self) -> bytes:
+        """The three bytes again."""
+        return bytes([self.flags.byte, self.status2, self.status3])
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,14 +148,22 @@ class System:
 
 @dataclass(frozen=True, slots=True)
 class DetailedStatus:
-    """The answer to 53; ``raw`` keeps all 64 bytes, the reserved ones too."""
+    """The answer to 53.
+
+    Attributes:
+        flags: byte 1.
+        system: bytes 2 to 28.
+        raw: all 64 bytes, the reserved ones too.
+        assumed: True if no paper says that this PLC's bytes have this layout.
+    """
 
     flags: StatusFlags
     system: System
     raw: bytes
+    assumed: bool = False
 
     @classmethod
-    def parse(cls, data: bytes) -> DetailedStatus:
+    def parse(cls, data: bytes, *, assumed: bool = False) -> DetailedStatus:
         """Read the 64 bytes of a 53 answer.
 
         Raises:
@@ -144,4 +173,11 @@ class DetailedStatus:
             raise FrameError(f"detailed status: expected {DETAILED_BYTES} bytes, got {len(data)}", raw=data)
         version = data[3]
         system = System(data[1], data[2], f"{version >> 4:X}.{version & 15:X}", *_COUNTS.unpack_from(data, 4))
-        return cls(StatusFlags.parse(data[0]), system, bytes(data))
+        return cls(StatusFlags.parse(data[0]), system, bytes(data), assumed)
+
+
+@dataclass(frozen=True, slots=True)
+class RawStatus:
+    """An answer to 53 of which nobody says what it means."""
+
+    raw: bytes

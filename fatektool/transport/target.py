@@ -4,7 +4,7 @@
 
     scheme       kind     opened by
     (none)       serial   pyserial, a device
-    tcp, udp     net      this project, port 500 unless named
+    tcp, udp     net      this project, port 500 unless named (FACON's; other protocols may have none)
     sim          sim      the simulator, within the process
     others       serial   pyserial, by its URL handler: rfc2217, socket, spy, …
 """
@@ -53,8 +53,12 @@ class Target:
     path: str = ""
 
     @classmethod
-    def parse(cls, text: str) -> Target:
+    def parse(cls, text: str, *, default_port: int | None = DEFAULT_PORT) -> Target:
         """Read a target.
+
+        Args:
+            text: as the user wrote it.
+            default_port: of TCP and UDP, if none is named; None if it must be.
 
         Raises:
             UsageError: it is none.
@@ -64,15 +68,20 @@ class Target:
         if text.startswith("sim:"):
             return cls(text, TargetKind.SIM, path=text.removeprefix("sim:"))
         if text.startswith(("tcp:", "udp:")):
-            return cls._net(text)
+            return cls._net(text, default_port)
         return cls(text, TargetKind.SERIAL, path=text)
 
     @classmethod
-    def _net(cls, text: str) -> Target:
+    def _net(cls, text: str, default_port: int | None) -> Target:
         match = _NET.fullmatch(text)
         if match is None:
             raise UsageError(f"target {text!r}: expected tcp://host:port or udp://host:port", hint=_WAYS)
-        port = int(match[4]) if match[4] else DEFAULT_PORT
+        port = int(match[4]) if match[4] else default_port
+        if port is None:
+            raise UsageError(
+                f"target {text!r}: expected a port, as this protocol has no usual one",
+                hint=f"name it: {text.rstrip('/')}:PORT",
+            )
         if not 1 <= port <= 65535:
             raise UsageError(f"target {text!r}: port: expected 1 to 65535, got {port}")
         kind = TargetKind.TCP if match[1] == "tcp" else TargetKind.UDP

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from random import Random
 
+FACON_KINDS = [kind.symbol for kind in KINDS.values() if kind.digits]
 FAMILIES: list[list[str]] = [
     ["R"],
     ["R", "R", "DR"],
@@ -23,7 +24,7 @@ FAMILIES: list[list[str]] = [
     ["R", "D", "DR", "X", "WY", "Y"],
     ["RT", "DRT", "T", "WT"],
     ["RC", "DRC", "R"],
-    list(KINDS),
+    FACON_KINDS,
 ]
 """Kinds that are asked for together; one given twice is asked for more often."""
 SPANS = (12, 30, 60, 150, 400)

@@ -22,21 +22,19 @@ from fatektool.protocol.commands import (
 )
 from fatektool.protocol.elements import KINDS, Element
 from fatektool.protocol.facon import FACON
+from fatektool.protocol.mseries import MSERIES
 from tests.plcs import simulated
 
-from .binary import BINARY
 from .exhaustive import wire_bytes
-from .sets import named
+from .sets import FACON_KINDS, named
 
 if TYPE_CHECKING:
     from fatektool.protocol.codec import Codec
 
-CODECS: dict[str, Codec] = {"facon": FACON, "binary": BINARY}
-codecs = pytest.mark.parametrize("codec", CODECS.values(), ids=CODECS)
 
-
-@codecs
-@pytest.mark.parametrize("symbol", KINDS)
+@pytest.mark.parametrize(
+    ("codec", "symbol"), [(FACON, symbol) for symbol in FACON_KINDS] + [(MSERIES, symbol) for symbol in KINDS]
+)
 @pytest.mark.parametrize("count", [1, 2, 7, 32])
 def test_runs_and_items(symbol: str, count: int, codec: Codec) -> None:
     """Each value of a run costs the same, each item of a mixed request too, wherever they are."""
@@ -64,24 +62,20 @@ def test_bytes_of_the_paper() -> None:
 
 
 def test_bytes_of_a_binary_protocol() -> None:
-    assert wire_bytes([ReadRegisters(Element("R", 12), 3)], BINARY, 0) == 8 + 2 + 1 + 3 + 8 + 3 + 6
-    assert wire_bytes([ReadMixed(tuple(named("R1 Y9 DWM0")))], BINARY, 0) == 8 + 2 + 1 + 11 + 8 + 3 + 7
+    assert wire_bytes([ReadRegisters(Element("R", 12), 3)], MSERIES, 0) == 8 + 2 + 1 + 3 + 8 + 3 + 6
+    assert wire_bytes([ReadMixed(tuple(named("R1 Y9 DWM0")))], MSERIES, 0) == 8 + 2 + 1 + 11 + 8 + 3 + 7
 
 
 def test_the_codec_decides() -> None:
     """Five discretes as such are dearer than a word in FACON's hex; three are in a binary protocol."""
     wanted = named("M0-M3")
     assert plan_reads(wanted, FACON) == [ReadDiscretes(Element("M", 0), 4)]
-    assert plan_reads(wanted, BINARY) != [ReadDiscretes(Element("M", 0), 4)]
-    for codec in (FACON, BINARY):
-        elements = named("R0-R9 R11-R20 R25-R40 R200-R240")
-        assert wire_bytes(plan_reads(elements, codec), codec, 0) <= wire_bytes(
-            plan_reads(
-                elements, {"facon": BINARY, "binary": FACON}["binary" if codec is BINARY else "facon"]
-            ),
-            codec,
-            0,
-        )
+    assert plan_reads(wanted, MSERIES) != [ReadDiscretes(Element("M", 0), 4)]
+    elements = named("R0-R9 R11-R20 R25-R40 R200-R240")
+    own: list[tuple[Codec, Codec]] = [(FACON, MSERIES), (MSERIES, FACON)]
+    for codec, other in own:
+        cost = wire_bytes(plan_reads(elements, codec), codec, 0)
+        assert cost <= wire_bytes(plan_reads(elements, other), codec, 0)
 
 
 @pytest.mark.parametrize("text", ["R0-R199", "M3-M90 R7 DWY8", "R1 R5 R9 R300 DD7 X1"])

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from fatektool.planner import plan_reads, plan_writes
 from fatektool.protocol.facon import FACON
+from fatektool.protocol.mseries import MSERIES
 
-from .binary import BINARY
 from .exhaustive import Caps, least_read, least_write, wire_bytes
 from .sets import TURNAROUNDS, apart, element_sets, named, scattered, side_by_side, small_set
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from fatektool.protocol.codec import Codec
     from fatektool.protocol.elements import Element
 
-CODECS: dict[str, Codec] = {"facon": FACON, "binary": BINARY}
+CODECS: dict[str, Codec] = {"facon": FACON, "mseries": MSERIES}
 codecs = pytest.mark.parametrize("codec", CODECS.values(), ids=CODECS)
 turnarounds = st.sampled_from(TURNAROUNDS)
 
@@ -110,7 +110,7 @@ def test_larger_sets(seed: int) -> None:
         "DWM0 DWM8 WM24",  # packed words across each other
         "M9990-M9999",  # a word must begin 8 earlier, as there are no 16 left
         "M9999 DWM9960",
-        "X0 Y0 M0 S0 T0 C0 R0 D0 F0 RT0 RC0 DRC0 DRT1",
+        "X0 Y0 M0 S0 T0 C0 R0 D0 RT0 RC0 DRC0 DRT1",
         "DRC0 DRC1 DRC2 DRC3 DRC5",  # two lines, by even and odd address
         "DR65534 R65535",
     ],

@@ -135,7 +135,7 @@ def test_a_run_ends_within_its_kind() -> None:
 # --- 46 and 47 ------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("first", [R0, WM0, Element("RT", 0), Element("F", 0)], ids=str)
+@pytest.mark.parametrize("first", [R0, WM0, Element("RT", 0), Element("D", 0)], ids=str)
 def test_64_words_of_16_bits(first: Element) -> None:
     assert FACON.encode(1, ReadRegisters(first, 64))[5:7] == b"40"
     assert len(FACON.encode(1, WriteRegisters(first, (0xFFFF,) * 64))) == 8 + 2 + 6 + 256

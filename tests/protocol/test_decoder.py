@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from fatektool.errors import FrameError
 from fatektool.protocol.facon import FACON, frame_bytes, lrc, parse_frame
 
-from .decoding import decoded, drained, framed, frames
-from .strategies import cuts, requests
+from .decoding import decoded, framed, frames
+from .strategies import requests
 from .vectors import FRAMES
 
 frame_raws = st.one_of(st.sampled_from(FRAMES), st.builds(FACON.encode, st.integers(0, 254), requests))
@@ -41,22 +41,6 @@ def test_frame_round_trip(station: int, command: int, data: bytes) -> None:
     assert raw == framed(b"%02X%02X%b" % (station, command, data))
 
 
-@given(st.data(), streams)
-def test_any_chunks_give_the_same_frames(data: st.DataObject, stream: bytes) -> None:
-    whole = frames([stream])
-    assert frames(bytes([byte]) for byte in stream) == whole
-    assert frames(data.draw(cuts(stream))) == whole
-
-
-@given(streams)
-def test_every_byte_is_accounted_for(stream: bytes) -> None:
-    decoder = FACON.decoder()
-    decoder.feed(stream)
-    given_back = b"".join(item.raw for item in drained(decoder))
-    assert stream.startswith(given_back)
-    assert len(given_back) + decoder.clear() == len(stream)
-
-
 @given(streams, frame_raws)
 @example(b"\x02" + 506 * b"x", FRAMES[0])
 @example(b"\x02" + 507 * b"x", FRAMES[0])
@@ -67,12 +51,6 @@ def test_a_good_frame_behind_anything_is_found(stream: bytes, raw: bytes) -> Non
         assert found
         assert not isinstance(found[-1], FrameError)
         assert found[-1].raw == raw
-
-
-@given(st.binary(max_size=1200))
-def test_any_bytes_raise_frame_error_or_nothing(data: bytes) -> None:
-    for item in decoded(data):
-        assert item.raw
 
 
 @given(st.lists(st.binary(max_size=200), max_size=20))
@@ -107,33 +85,6 @@ def test_a_frame_without_end_is_dropped_at_508_bytes() -> None:
         decoder.next_frame()
     assert len(caught.value.raw) == 508
     assert decoder.next_frame() is None
-
-
-@pytest.mark.parametrize("byte", [b"x", b"\x02", b"\x03", b"\x00"])
-def test_the_buffer_is_bounded(byte: bytes) -> None:
-    decoder = FACON.decoder()
-    for _ in range(100):
-        decoder.feed(byte * 10_000)
-    assert decoder.clear() <= 1 << 16
-    decoder.feed(byte * 1_000_000 + FRAMES[0])
-    assert decoder.clear() <= 1 << 16
-
-
-def test_of_too_much_the_newest_is_kept() -> None:
-    assert [frame.raw for frame in frames([b"x" * 1_000_000 + FRAMES[0]])] == [FRAMES[0]]
-
-
-def test_clear() -> None:
-    decoder = FACON.decoder()
-    assert decoder.clear() == 0
-    decoder.feed(FRAMES[0] + FRAMES[1][:5])
-    assert decoder.next_frame() is not None
-    assert decoder.clear() == 5
-    assert decoder.next_frame() is None
-    decoder.feed(FRAMES[1])
-    frame = decoder.next_frame()
-    assert frame is not None
-    assert frame.raw == FRAMES[1]
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,8 @@ from fatektool.protocol.status import MODELS, POINTS_FB, POINTS_FBS
 from .decoding import decoded, one_frame
 from .vectors import EXAMPLES, MISPRINTS, NAMES
 
-DOC = (Path(__file__).parents[2] / "docs/protocol-facon.md").read_text("utf-8")
+DOCS = Path(__file__).parents[2] / "docs"
+DOC = (DOCS / "protocol-facon.md").read_text("utf-8")
 HEX = re.compile(r"[0-9A-F]{2}(?: [0-9A-F]{2})*")
 
 
@@ -34,12 +35,12 @@ class Shown:
     words: str
 
 
-def blocks() -> list[tuple[str, list[Shown]]]:
+def blocks(doc: str, language: str) -> list[tuple[str, list[Shown]]]:
     """Each block of frames, with the heading that it stands under."""
     found = []
-    for section in re.split(r"^#+ ", DOC, flags=re.MULTILINE)[1:]:
+    for section in re.split(r"^#+ ", doc, flags=re.MULTILINE)[1:]:
         heading, _, text = section.partition("\n")
-        fenced = re.findall(r"^```facon\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+        fenced = re.findall(rf"^```{language}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
         found += [(heading, frames_of(block)) for block in fenced]
     return found
 
@@ -60,21 +61,21 @@ def frames_of(block: str) -> list[Shown]:
     return frames
 
 
-def words(explanation: Explanation) -> str:
-    """The data field's meaning as the document writes it."""
+def words(explanation: Explanation, before: int = 3) -> str:
+    """The data field's meaning as the document writes it; ``before`` is how many fields stand before it."""
     return " · ".join(
         f"{field.name}: {field.meaning}" if field.meaning else field.name
-        for field in explanation.fields[3:-2]
+        for field in explanation.fields[before:-2]
     )
 
 
-def table(header: str) -> list[list[str]]:
+def table(header: str, doc: str = DOC) -> list[list[str]]:
     """The rows of the table that begins with this header, marks of code and weight taken off."""
-    lines = DOC[DOC.index(f"| {header} |") :].split("\n\n")[0].splitlines()
+    lines = doc[doc.index(f"| {header} |") :].split("\n\n", maxsplit=1)[0].splitlines()
     return [[re.sub(r"[`*]", "", cell).strip() for cell in line.strip("|").split("|")] for line in lines[2:]]
 
 
-BLOCKS = blocks()
+BLOCKS = blocks(DOC, "facon")
 
 
 @pytest.mark.parametrize(("heading", "frames"), BLOCKS, ids=[f"{n} {b[0]}" for n, b in enumerate(BLOCKS)])
@@ -135,7 +136,7 @@ def test_sums() -> None:
 
 def test_elements() -> None:
     rows = table("kind")
-    assert {row[0] for row in rows} == set(KINDS)
+    assert {row[0] for row in rows} == {kind.symbol for kind in KINDS.values() if kind.digits}
     for symbol, _, bits, first, last, stride, step in rows:
         kind = KINDS[symbol]
         assert (kind.bits, kind.stride, kind.step) == (int(bits), int(stride), int(step))
@@ -154,10 +155,18 @@ def test_codes() -> None:
     assert (fb, fbs) == (POINTS_FB, POINTS_FBS)
 
 
-def test_links_lead_somewhere() -> None:
-    headings = {
+def headings(doc: str) -> set[str]:
+    """The anchors of a document."""
+    return {
         re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
-        for heading in re.findall(r"^#+ (.*)$", DOC, re.MULTILINE)
+        for heading in re.findall(r"^#+ (.*)$", doc, re.MULTILINE)
     }
-    for anchor in re.findall(r"\]\(#([^)]*)\)", DOC):
-        assert anchor in headings
+
+
+@pytest.mark.parametrize("name", ["protocol-facon.md", "protocol-mseries.md"])
+def test_links_lead_somewhere(name: str) -> None:
+    doc = (DOCS / name).read_text("utf-8")
+    for page, anchor in re.findall(r"\]\(([\w.-]*)#([^)]*)\)", doc):
+        assert anchor in headings((DOCS / page).read_text("utf-8") if page else doc)
+    for page in re.findall(r"\]\(([\w.-]+)\)", doc):
+        assert (DOCS / page).exists()

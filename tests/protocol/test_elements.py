@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fatektool.errors import UsageError
+from fatektool.errors import FrameError, UsageError
 from fatektool.protocol.elements import KINDS, Element
 from fatektool.protocol.facon_text import element_text, take_element
 
@@ -40,18 +40,35 @@ TABLE: list[Row] = [
     ("RC", 16, 1, 1, b"RC0000", b"RC9999"),
     ("R", 16, 1, 1, b"R00000", b"R65535"),
     ("D", 16, 1, 1, b"D00000", b"D65535"),
-    ("F", 16, 1, 1, b"F00000", b"F65535"),
     ("DRT", 32, 2, 1, b"DRT0000", b"DRT9998"),
     ("DRC", 32, 2, 1, b"DRC0000", b"DRC9998"),
     ("DR", 32, 2, 1, b"DR00000", b"DR65534"),
     ("DD", 32, 2, 1, b"DD00000", b"DD65534"),
-    ("DF", 32, 2, 1, b"DF00000", b"DF65534"),
 ]
 rows = pytest.mark.parametrize("row", TABLE, ids=[row[0] for row in TABLE])
 
 
 def test_the_table_is_whole() -> None:
-    assert set(KINDS) == {row[0] for row in TABLE}
+    assert set(KINDS) == {row[0] for row in TABLE} | {"F", "DF"}
+
+
+@pytest.mark.parametrize("symbol", ["F", "DF"])
+def test_file_registers_are_the_m_series(symbol: str) -> None:
+    """FACON's paper has none: it refuses them by name."""
+    with pytest.raises(UsageError) as caught:
+        element_text(Element(symbol, 12))
+    assert caught.value.message == f"{symbol}12: facon has no {symbol}, expected another kind of element"
+    assert "--protocol mseries" in str(caught.value.hint)
+    with pytest.raises(FrameError, match="no element at character 0"):
+        take_element(f"{symbol}00012".encode(), 0)
+
+
+def test_file_registers() -> None:
+    kind = KINDS["F"]
+    assert (kind.bits, kind.stride, kind.step, kind.words, kind.last) == (16, 1, 1, 1, 65535)
+    kind = KINDS["DF"]
+    assert (kind.bits, kind.stride, kind.step, kind.words, kind.last) == (32, 2, 1, 2, 65534)
+    assert str(Element.parse("df00012").after(1)) == "DF14"
 
 
 @rows

@@ -11,6 +11,7 @@ import fatektool.protocol
 
 FOLDER = Path(fatektool.protocol.__file__).parent
 ALLOWED = {
+    "abc",
     "__future__",
     "binascii",
     "collections",
