@@ -9,23 +9,26 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fatektool.cli.options import PATH, PROTOCOLS, voice_options
+from fatektool.cli.options import PATH, voice_options
 from fatektool.cli.output import print_json
 from fatektool.errors import UsageError
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.faults import PROBABILITY_KINDS
-from fatektool.simulator.models import DEFAULT_MODEL, MODELS
+from fatektool.simulator.models import MODELS
 from fatektool.simulator.plc import FLAGS
 from fatektool.simulator.servers import Server
+from fatektool.simulator.slaves import DEFAULT_PROTOCOL, SLAVES
 from fatektool.transport.base import LineSettings
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from fatektool.cli.output import Voice
-    from fatektool.simulator.build import Simulation
+    from fatektool.simulator.doors import Lines
 
 _DOOR = re.compile(r"(?:\[([^\]]+)\]|([^:]*)):(\d{1,5})|(\d{1,5})", re.ASCII)
+
+_DEFAULT_MODELS = ", ".join(f"{spoken.model} with {name}" for name, spoken in SLAVES.items())
 
 
 @click.command(
@@ -35,10 +38,12 @@ _DOOR = re.compile(r"(?:\[([^\]]+)\]|([^:]*)):(\d{1,5})|(\d{1,5})", re.ASCII)
 @click.option("--tcp", multiple=True, metavar="HOST:PORT", help="Listen on TCP; port 0 picks a free one.")
 @click.option("--udp", multiple=True, metavar="HOST:PORT", help="Listen on UDP.")
 @click.option("--pty", multiple=True, metavar="LINK", help="Be a serial port: a pty, LINK leads to it.")
-@click.option("--protocol", type=click.Choice(PROTOCOLS), default="facon", show_default=True)
+@click.option("--protocol", type=click.Choice(list(SLAVES)), default=DEFAULT_PROTOCOL, show_default=True)
 @click.option("--station", multiple=True, type=click.IntRange(1, 254), help="A station; may be repeated.")
 @click.option(
-    "--model", type=click.Choice(list(MODELS)), help=f"What the PLCs are.  [default: {DEFAULT_MODEL}]"
+    "--model",
+    type=click.Choice(list(MODELS)),
+    help=f"What the PLCs are.  [default: {_DEFAULT_MODELS}]",
 )
 @click.option("--ladder-words", type=click.IntRange(1, 65535), help="Another size of the program memory.")
 @click.option("--program", type=PATH, metavar="BACKUP", help="The program in the PLCs.")
@@ -55,16 +60,36 @@ _DOOR = re.compile(r"(?:\[([^\]]+)\]|([^:]*)):(\d{1,5})|(\d{1,5})", re.ASCII)
 )
 @click.option("--baud", type=click.IntRange(50, 4_000_000), help="Pace the line.")
 @click.option(
-    "--format", "line_format", default="7E1", show_default=True, help="Bits a character, for the pace."
+    "--strict-baud", is_flag=True, help="A client of a pty at another speed than --baud is not understood."
+)
+@click.option(
+    "--format", "line_format", help="Bits a character, for the pace.  [default: 7E1; 8E1 for mseries]"
 )
 @click.option("--scan-ms", type=click.FloatRange(0, 60_000), default=0.0, help="Time to answer.")
 @click.option(
     "--fault",
     multiple=True,
     metavar="KIND=P",
-    help=f"Go wrong with probability P: {', '.join(PROBABILITY_KINDS)}; power-cut=N.",
+    help=f"Go wrong with probability P: {', '.join(PROBABILITY_KINDS)}; bit-errors=P, for each byte;"
+    " power-cut=N, at the N-th write of a page.",
 )
 @click.option("--seed", type=int, default=0, show_default=True, help="Of the faults.")
+@click.option(
+    "--replay", type=PATH, metavar="TRACE", help="Answer as the PLC did that --trace recorded in TRACE."
+)
+@click.option(
+    "--replay-speed",
+    type=click.FloatRange(0, 1_000_000),
+    metavar="N",
+    help="10 for a tenth of the recorded delays, 0 for none.  [default: 1]",
+)
+@click.option(
+    "--latency-timer",
+    type=click.FloatRange(0, 10_000),
+    default=0.0,
+    metavar="MS",
+    help="Give answers out at ticks of MS ms only, as a USB adapter does (16).",
+)
 @click.option("--no-program-commands", is_flag=True, help="Refuse 4F and 50, as some FBs units do.")
 @click.option("--no-error-character", is_flag=True, help="Answer 4F and 53 as the paper's figures draw them.")
 @voice_options
@@ -74,7 +99,7 @@ def simulate_command(
     tcp: tuple[str, ...],
     udp: tuple[str, ...],
     pty: tuple[str, ...],
-    protocol: str,  # noqa: ARG001  # one protocol so far; the option is the contract's
+    protocol: str,
     station: tuple[int, ...],
     model: str | None,
     ladder_words: int | None,
@@ -83,10 +108,14 @@ def simulate_command(
     state: Path | None,
     flags: tuple[str, ...],
     baud: int | None,
-    line_format: str,
+    strict_baud: bool,
+    line_format: str | None,
     scan_ms: float,
     fault: tuple[str, ...],
     seed: int,
+    replay: Path | None,
+    replay_speed: float | None,
+    latency_timer: float,
     no_program_commands: bool,
     no_error_character: bool,
 ) -> None:
@@ -94,9 +123,28 @@ def simulate_command(
 
     Prints one line 'listening …' for each door, and ends on SIGTERM or Ctrl-C. Binds to 127.0.0.1 unless told
     otherwise.
+
+    For diagnosis there are faults of a line: wrong-line, noise instead of an answer, as when baud or format
+    do not fit; twins, two PLCs at one station; bit-errors, each byte for itself, so that long answers suffer
+    more. The same seed gives the same faults; docs/simulator.md tells of each.
     """
     if not (tcp or udp or pty):
         raise UsageError("no door named", hint="give --tcp HOST:PORT, --udp HOST:PORT or --pty LINK")
+    if strict_baud and (baud is None or not pty):
+        raise UsageError("--strict-baud is for a --pty with a --baud")
+    doors = [("tcp", door) for door in tcp] + [("udp", door) for door in udp]
+    if replay is not None:
+        from fatektool.cli.replay import open_replay, tell_unknown
+
+        speed = 1.0 if replay_speed is None else replay_speed
+        recorded = open_replay(replay, protocol, speed, click.get_current_context(), voice)
+        try:
+            _serve(recorded, voice, doors, pty)
+        finally:
+            tell_unknown(recorded, voice)
+        return
+    if replay_speed is not None:
+        raise UsageError("--replay-speed is for a recorded PLC", hint="name the recording with --replay")
     wanted: dict[str, Any] = {}
     if program is not None:
         from fatektool.program.archive import load_backup
@@ -110,6 +158,7 @@ def simulate_command(
     simulation = build_simulation(
         station or None,
         model,
+        protocol=protocol,
         **wanted,
         program_seed=program_seed,
         program_commands=not no_program_commands,
@@ -118,26 +167,34 @@ def simulate_command(
         faults=fault,
         seed=seed,
         baud=baud,
-        bits_per_char=LineSettings(9600, line_format.upper()).byte_time_s * 9600,
+        bits_per_char=None if line_format is None else _bits_per_char(line_format),
         scan_ms=scan_ms,
+        latency_timer_ms=latency_timer,
     )
     for plc in simulation.plcs.values():
         for flag in flags:
             setattr(plc, flag, True)
-    _serve(simulation, voice, [("tcp", door) for door in tcp] + [("udp", door) for door in udp], pty)
+    try:
+        _serve(simulation, voice, doors, pty, baud if strict_baud else None)
+    finally:
+        simulation.save_if_changed()
 
 
 def _serve(
-    simulation: Simulation, voice: Voice, doors: list[tuple[str, str]], links: tuple[str, ...]
+    lines: Lines,
+    voice: Voice,
+    doors: list[tuple[str, str]],
+    links: tuple[str, ...],
+    pty_baud: int | None = None,
 ) -> None:
-    server = Server(simulation)
+    server = Server(lines)
     signal.signal(signal.SIGTERM, lambda *_: server.stop())
     try:
         opened = [
             (server.open_tcp if kind == "tcp" else server.open_udp)(*_host_and_port(text))
             for kind, text in doors
         ]
-        opened += [server.open_pty(link) for link in links]
+        opened += [server.open_pty(link, pty_baud) for link in links]
         if voice.json:
             addresses = [door.address for door in opened]
             print_json({"schema": "fatektool.simulate/1", "listening": addresses})
@@ -148,7 +205,11 @@ def _serve(
         server.serve_until()
     finally:
         server.close()
-        simulation.save_if_changed()
+
+
+def _bits_per_char(line_format: str) -> float:
+    line = LineSettings(9600, line_format.upper())
+    return line.byte_time_s * line.baud
 
 
 def _host_and_port(text: str) -> tuple[str, int]:

@@ -14,15 +14,17 @@ With a state file the memory in it is what counts: a model that contradicts it i
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
+from math import inf
 from typing import TYPE_CHECKING
 
 from fatektool.errors import DataError, UsageError
-from fatektool.simulator.facon_slave import FaconSlave
 from fatektool.simulator.faults import DEFAULT_SLOW_S, Faults, parse_faults
 from fatektool.simulator.line import BITS_PER_CHAR, PIECE_S, WHOLE_ANSWERS, SimulatedLine
 from fatektool.simulator.models import DEFAULT_MODEL, MAX_LADDER_WORDS, MODELS, PAGE_BYTES, WORDS_PER_PAGE
 from fatektool.simulator.plc import MAX_STATION, SimulatedPlc
 from fatektool.simulator.program_image import demonstration_program
+from fatektool.simulator.slaves import DEFAULT_PROTOCOL, SLAVES
 from fatektool.simulator.state import StateFile
 
 if TYPE_CHECKING:
@@ -45,15 +47,17 @@ class Simulation:
         baud: bits a second; None for a wire that takes no time.
         bits_per_char: with start, parity and stop bits.
         scan_s: the PLCs' time to answer.
+        latency_timer_s: see ``SimulatedLine``.
     """
 
     plcs: dict[int, SimulatedPlc]
-    make_slave: Callable[[Mapping[int, SimulatedPlc]], Slave] = FaconSlave
+    make_slave: Callable[[Mapping[int, SimulatedPlc]], Slave] = SLAVES[DEFAULT_PROTOCOL].make_slave
     faults: Faults | None = None
     state: StateFile | None = None
     baud: float | None = None
     bits_per_char: float = BITS_PER_CHAR
     scan_s: float = 0.0
+    latency_timer_s: float = 0.0
 
     @property
     def powered(self) -> bool:
@@ -74,6 +78,7 @@ class Simulation:
             self.bits_per_char,
             self.scan_s,
             piece_s=WHOLE_ANSWERS if whole_answers else PIECE_S,
+            latency_timer_s=self.latency_timer_s,
             after_request=None if self.state is None else self.save_if_changed,
         )
 
@@ -132,6 +137,7 @@ def build_simulation(
     stations: Iterable[int] | None = None,
     model: str | None = None,
     *,
+    protocol: str = DEFAULT_PROTOCOL,
     ladder_words: int | None = None,
     program: Sequence[bytes] | None = None,
     program_seed: int = 1,
@@ -142,14 +148,16 @@ def build_simulation(
     seed: int = 0,
     slow_s: float = DEFAULT_SLOW_S,
     baud: float | None = None,
-    bits_per_char: float = BITS_PER_CHAR,
+    bits_per_char: float | None = None,
     scan_ms: float = 0.0,
+    latency_timer_ms: float = 0.0,
 ) -> Simulation:
     """A simulator, ready for lines.
 
     Args:
         stations: by default those of the state file, or 1.
-        model: by default that of the state file, or the FBE-28MC.
+        model: by default that of the state file, or the one that ``SLAVES`` names for the protocol.
+        protocol: a name of ``SLAVES``.
         ladder_words: see ``build_plcs``.
         program: see ``build_plcs``.
         program_seed: see ``build_plcs``.
@@ -160,20 +168,26 @@ def build_simulation(
         seed: of the faults.
         slow_s: the delay of a slow answer.
         baud: bits a second; None for a wire that takes no time.
-        bits_per_char: with start, parity and stop bits.
+        bits_per_char: with start, parity and stop bits; by default those that ``SLAVES`` names.
         scan_ms: the PLCs' time to answer.
+        latency_timer_ms: of a USB adapter at the client's end; 0 for none.
     """
+    spoken = SLAVES.get(protocol)
+    if spoken is None:
+        raise UsageError(f"no protocol {protocol!r}: choose one of {', '.join(SLAVES)}")
     plan = parse_faults(faults)
     if (baud is not None and not baud > 0) or not scan_ms >= 0:
         raise UsageError(
             f"a line has a baud rate above 0 and a scan time from 0 ms, not {baud} and {scan_ms}"
         )
+    if not 0 <= latency_timer_ms < inf:
+        raise UsageError(f"a latency timer is of 0 ms or more, not {latency_timer_ms}")
     state_file = None if state is None else StateFile(state)
     kept = None if state_file is None else state_file.load()
     if kept is None or state_file is None:
         plcs = build_plcs(
             (1,) if stations is None else stations,
-            model,
+            model or spoken.model,
             ladder_words=ladder_words,
             program=program,
             program_seed=program_seed,
@@ -184,17 +198,15 @@ def build_simulation(
         for plc in plcs.values():
             plc.program_commands = program_commands
 
-    def make_slave(shared: Mapping[int, SimulatedPlc]) -> FaconSlave:
-        return FaconSlave(shared, error_character=error_character)
-
     simulation = Simulation(
         plcs,
-        make_slave,
+        partial(spoken.make_slave, error_character=error_character),
         Faults(plan, seed=seed, slow_s=slow_s) if plan.probabilities or plan.power_cut else None,
         state_file,
         baud,
-        bits_per_char,
+        bits_per_char or spoken.bits_per_char,
         scan_ms / 1000,
+        latency_timer_ms / 1000,
     )
     # At once, so that a path that cannot be written is known before the first request.
     simulation.save_if_changed()

@@ -22,7 +22,6 @@ from typing import TYPE_CHECKING, Protocol
 from fatektool.errors import LineError
 
 if TYPE_CHECKING:
-    from fatektool.simulator.line import SimulatedLine
     from fatektool.simulator.servers import Server
 
 _READ_BYTES = 65536
@@ -34,6 +33,27 @@ _MAX_PENDING = 1 << 14
 
 _MAX_SENDERS = 64
 _MAX_PORT = 0xFFFF
+
+
+class Line(Protocol):
+    """What is behind a door: bytes and times in, bytes and times out."""
+
+    def receive(self, data: bytes, now: float) -> list[tuple[float, bytes]]:
+        """Take bytes of a stream; give what comes back, as (due time, bytes), times never decreasing."""
+
+    def datagram(self, data: bytes, now: float) -> list[tuple[float, bytes]]:
+        """The same for a message that stands by itself."""
+
+
+class Lines(Protocol):
+    """Where doors get their lines from: a ``Simulation`` or a ``Replay``."""
+
+    @property
+    def powered(self) -> bool:
+        """False while nothing answers and no connection is held."""
+
+    def line(self, *, whole_answers: bool = False) -> Line:
+        """A new line; ``whole_answers`` for a medium of datagrams."""
 
 
 class Door(Protocol):
@@ -94,7 +114,7 @@ class TcpConnection:
         self._server = server
         self._door = door
         self._socket = client
-        self._line: SimulatedLine = server.simulation.line()
+        self._line: Line = server.simulation.line()
         self._backlog = bytearray()
         self._events = selectors.EVENT_READ
         self._pending = 0
@@ -186,7 +206,7 @@ class UdpDoor:
         self._socket = _bound(socket.SOCK_DGRAM, "udp", host, port)
         self.address = _address("udp", self._socket)
         # A line keeps the pace and the late answers of one sender; the oldest senders are forgotten.
-        self._lines: OrderedDict[object, SimulatedLine] = OrderedDict()
+        self._lines: OrderedDict[object, Line] = OrderedDict()
         server.selector.register(self._socket, selectors.EVENT_READ, self._on_ready)
 
     def _on_ready(self, _events: int) -> None:
@@ -196,7 +216,7 @@ class UdpDoor:
             due = self._line(sender).datagram(data, self._server.now())
             self._server.dispatch(due, lambda piece: self._send(piece, sender), join=False)
 
-    def _line(self, sender: object) -> SimulatedLine:
+    def _line(self, sender: object) -> Line:
         line = self._lines.pop(sender, None) or self._server.simulation.line(whole_answers=True)
         self._lines[sender] = line
         if len(self._lines) > _MAX_SENDERS:

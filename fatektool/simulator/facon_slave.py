@@ -57,6 +57,7 @@ _KIND_OF_COMMAND = {
     b"45": RequestKind.WRITE,
     b"47": RequestKind.WRITE,
     b"49": RequestKind.WRITE,
+    _LOOPBACK: RequestKind.LOOPBACK,
     b"50": RequestKind.PAGE_WRITE,
 }
 
@@ -69,6 +70,8 @@ class FaconSlave:
         error_character: False leaves the error character out of good answers to 4F and 53, as the
             paper's figures draw them; its worked example has it.
     """
+
+    delimiters = (b"\x02", b"\x03")
 
     def __init__(self, plcs: Mapping[int, SimulatedPlc], *, error_character: bool = True) -> None:
         self.plcs = plcs

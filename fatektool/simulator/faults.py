@@ -5,23 +5,31 @@
     drop          the answer does not come
     flip          one of the low 7 bits of one byte of the answer is wrong
     truncate      the answer ends too early, after its first byte at the soonest
-    noise         1 to 8 random bytes come before the answer, STX and ETX among them
+    noise         1 to 8 random bytes come before the answer, those that delimit one among them
     duplicate     the answer comes twice
     late          the answer is held back until the next request was received
     slow          the answer comes 0.8 s later
     wrong-station the answer bears another station, its checksum right
     lying-write   a write is acknowledged and not made
     echo          what arrives is sent back first, as on a two-wire line
+    wrong-line    baud or format do not fit: the request is not understood, noise about as long comes back
+    twins         two PLCs have this station and fall out of step: their answers come one right behind the
+                  other, or over each other, one byte apart: what either holds low is low
+    bit-errors=P  one of the low 7 bits of a byte of the answer is wrong, with probability P for each byte:
+                  the longer an answer, the likelier it is spoiled
     power-cut=N   the N-th request to write a program page takes the power away
 
-Each but the last has a probability, drawn for each answer (``echo``: for each chunk of bytes that
+Each but the last two has a probability, drawn for each answer (``echo``: for each chunk of bytes that
 arrives). Each kind draws from a generator of its own, so that one more kind leaves untouched which
-answers the others hit. A dropped answer is hit by nothing else.
+answers the others hit. A dropped answer is hit by nothing else, nor is what a wrong line makes of one.
+Twins that keep in step, as all are without a strike, look like one PLC. The noise of a wrong line never
+ends as a frame does, so that none is ever found in it.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from operator import and_
 from random import Random
 from typing import TYPE_CHECKING
 
@@ -42,9 +50,14 @@ PROBABILITY_KINDS = (
     "wrong-station",
     "lying-write",
     "echo",
+    "wrong-line",
+    "twins",
 )
+"""The kinds whose probability is that of an answer."""
+
+BIT_ERRORS = "bit-errors"
 POWER_CUT = "power-cut"
-FAULT_KINDS = (*PROBABILITY_KINDS, POWER_CUT)
+FAULT_KINDS = (*PROBABILITY_KINDS, BIT_ERRORS, POWER_CUT)
 
 DEFAULT_SLOW_S = 0.8
 _MAX_NOISE = 8
@@ -73,7 +86,7 @@ def parse_faults(texts: Iterable[str]) -> FaultPlan:
         if kind not in FAULT_KINDS or not equals:
             raise UsageError(
                 f"no fault {text!r}: write KIND=P, P from 0 to 1, KIND one of"
-                f" {', '.join(PROBABILITY_KINDS)}; or {POWER_CUT}=N"
+                f" {', '.join(PROBABILITY_KINDS)}, {BIT_ERRORS}; or {POWER_CUT}=N"
             )
         if kind in probabilities or (kind == POWER_CUT and power_cut is not None):
             raise UsageError(f"fault {kind} is given twice")
@@ -140,7 +153,7 @@ class Faults:
 
     def answer(self, slave: Slave, request: Request) -> bytes | None:
         """Have ``request`` executed, or not: the power may go, a write may be a lie."""
-        if request.kind is RequestKind.OTHER:
+        if request.kind in {RequestKind.OTHER, RequestKind.LOOPBACK}:
             return slave.answer(request)
         addressed = slave.plcs.get(request.station)
         here = addressed is not None or request.station == BROADCAST
@@ -170,19 +183,56 @@ class Faults:
             random = self._random["flip"]
             spoiled[random.randrange(len(answer))] ^= 1 << random.randrange(7)
             answer = bytes(spoiled)
+        answer = self._with_bit_errors(answer)
         if self._strikes("truncate"):
             answer = answer[: self._random["truncate"].randrange(1, len(answer))]
         if self._strikes("noise"):
-            random = self._random["noise"]
-            answer = bytes(map(self._noise, range(random.randint(1, _MAX_NOISE)))) + answer
-        copies = [answer, answer] if self._strikes("duplicate") else [answer]
+            answer = self._noise(slave.delimiters) + answer
+        copies = self._from_twins(answer) if self._strikes("twins") else [answer]
+        if self._strikes("duplicate"):
+            copies *= 2
         delay_s = self.slow_s if self._strikes("slow") else 0.0
         return SpoiledAnswer(copies, delay_s, late=self._strikes("late"))
 
-    def _noise(self, _: int) -> int:
-        # One byte in four delimits a frame: plain random bytes would hardly ever do so.
+    def garbage(self, slave: Slave, request: Request) -> bytes | None:
+        """What comes back for a request that nobody could understand; None if it was understood.
+
+        It is empty for a broadcast, which nobody answers, understood or not.
+        """
+        broadcast = request.station == BROADCAST
+        if not (broadcast or request.station in slave.plcs) or not self._strikes("wrong-line"):
+            return None
+        if broadcast:
+            return b""
+        random = self._random["wrong-line"]
+        length = random.randint(len(request.raw) * 3 // 4, len(request.raw) * 5 // 4)
+        never = slave.delimiters[-1][-1]
+        return bytes(byte + (byte >= never) for byte in (random.randrange(255) for _ in range(length)))
+
+    def _noise(self, delimiters: tuple[bytes, ...]) -> bytes:
+        # One draw in four delimits a frame: plain random bytes would hardly ever do so.
         random = self._random["noise"]
-        return random.choice((0x02, 0x03)) if random.random() < 1 / 4 else random.randrange(256)
+        noise = bytearray()
+        count = random.randint(1, _MAX_NOISE)
+        while len(noise) < count:
+            noise += random.choice(delimiters) if random.random() < 1 / 4 else bytes((random.randrange(256),))
+        return bytes(noise[:count])
+
+    def _with_bit_errors(self, answer: bytes) -> bytes:
+        random = self._random.get(BIT_ERRORS)
+        if random is None:
+            return answer
+        spoiled = bytearray(answer)
+        for at in range(len(spoiled)):
+            if self._strikes(BIT_ERRORS):
+                spoiled[at] ^= 1 << random.randrange(7)
+        return bytes(spoiled)
+
+    def _from_twins(self, answer: bytes) -> list[bytes]:
+        if self._random["twins"].random() < 1 / 2:
+            return [answer, answer]
+        # A line at rest is high, all ones; an end of it that is held low wins over one that is not.
+        return [bytes(map(and_, answer + b"\xff", b"\xff" + answer))]
 
     def _strikes(self, kind: str) -> bool:
         random = self._random.get(kind)

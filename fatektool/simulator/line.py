@@ -14,10 +14,14 @@ on RS-232: a request that arrives while an earlier one still crosses waits for i
 the answers before it, so that due times never decrease from one call to the next.
 
 Without a baud rate the wire takes no time and an answer is one piece.
+
+A USB adapter with a *latency timer* hands on what it has received at its ticks only: then a piece is due at
+the next tick after it crossed. Ticks are multiples of the timer on the clock that ``now`` is of.
 """
 
 from __future__ import annotations
 
+from math import floor
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -43,6 +47,7 @@ class SimulatedLine:
         bits_per_char: with start, parity and stop bits.
         scan_s: the PLC's time from the end of a request to the start of its answer.
         piece_s: wire time of one piece of an answer; ``WHOLE_ANSWERS`` for a medium of datagrams.
+        latency_timer_s: seconds from tick to tick of a USB adapter, 16 ms as most are delivered; 0 for none.
         after_request: called when a request was executed, before its answer is given out: the place
             to save the memory, so that nothing is acknowledged that could be lost.
     """
@@ -56,6 +61,7 @@ class SimulatedLine:
         scan_s: float = 0.0,
         *,
         piece_s: float = PIECE_S,
+        latency_timer_s: float = 0.0,
         after_request: Callable[[], object] | None = None,
     ) -> None:
         self._slave = slave
@@ -63,6 +69,7 @@ class SimulatedLine:
         self._char_s = bits_per_char / baud if baud else 0.0
         self._scan_s = scan_s
         self._piece_chars = _piece_chars(piece_s, self._char_s)
+        self._latency_timer_s = latency_timer_s
         self._after_request = after_request
         self._request_wire_free = float("-inf")
         self._answer_wire_free = float("-inf")
@@ -100,6 +107,10 @@ class SimulatedLine:
 
     def _serve(self, request: Request, ready: float, due: list[tuple[float, bytes]]) -> None:
         faults = self._faults
+        garbage = None if faults is None else faults.garbage(self._slave, request)
+        if garbage is not None:
+            self._send(garbage, ready, due)
+            return
         answer = self._slave.answer(request) if faults is None else faults.answer(self._slave, request)
         if self._after_request is not None:
             self._after_request()
@@ -127,8 +138,16 @@ class SimulatedLine:
         size = self._piece_chars or len(data)
         for at in range(0, len(data), size):
             piece = data[at : at + size]
-            due.append((start + (at + len(piece)) * char_s, piece))
+            due.append((self._handed_on(start + (at + len(piece)) * char_s), piece))
         self._answer_wire_free = start + len(data) * char_s
+
+    def _handed_on(self, received: float) -> float:
+        """When a piece that has crossed the wire comes out of the adapter: at the tick after, never at it."""
+        timer_s = self._latency_timer_s
+        if not timer_s:
+            return received
+        ticks = floor(received / timer_s) + 1
+        return ticks * timer_s if ticks * timer_s > received else (ticks + 1) * timer_s
 
 
 def _piece_chars(piece_s: float, char_s: float) -> int:

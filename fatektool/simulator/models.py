@@ -3,7 +3,8 @@
 The figures of ``fbe-28mc`` are those of the worked example of the FACON paper (section 4.2, command
 53), the ones of ``fbs-20mc`` were read from a unit of OS 4.0. The others share them, but for what
 their name says: main unit, points and ladder size. Brief status byte 2 follows the table of command
-40; an FBs answers 40H there, which is not in that table.
+40; an FBs answers 40H there, which is not in that table. The M-series paper gives no sizes: ``m-series`` has
+those of an FBs, with its file registers F.
 
 A model with another ladder is had by ``dataclasses.replace(model, ladder_words=...)``.
 """
@@ -108,5 +109,6 @@ MODELS: dict[str, Model] = {
         replace(_FBE_28MC, name="fbn-40mc", status2=0x56, points_code=0x03),
         _FBS_20MC,
         replace(_FBS_20MC, name="fbs-60mc", points_code=0x06),
+        replace(_FBS_20MC, name="m-series"),
     )
 }

@@ -18,11 +18,12 @@ import os
 import selectors
 from typing import TYPE_CHECKING
 
-from fatektool.errors import LineError
+from fatektool.errors import LineError, UsageError
 from fatektool.simulator.pty_link import LOCKS_SUPPORTED, PtyLink
 
 try:
     import pty
+    import termios
     import tty
 except ImportError:  # Windows has none of them
     PTY_SUPPORTED = False
@@ -30,10 +31,12 @@ else:
     PTY_SUPPORTED = LOCKS_SUPPORTED
 
 if TYPE_CHECKING:
-    from fatektool.simulator.line import SimulatedLine
+    from fatektool.simulator.doors import Line
     from fatektool.simulator.servers import Server
 
 _READ_BYTES = 65536
+_OUTPUT_SPEED = 5
+"""The place of a terminal's speed among its attributes: the client's setting, seen from this end."""
 
 
 class PtyDoor:
@@ -42,13 +45,15 @@ class PtyDoor:
     Args:
         server: whose reactor watches it.
         link: the path that clients open; it is made, and removed at the end.
+        baud: the only speed that is understood, as on a real line; None for any.
     """
 
-    def __init__(self, server: Server, link: str | os.PathLike[str]) -> None:
+    def __init__(self, server: Server, link: str | os.PathLike[str], baud: int | None = None) -> None:
         if not PTY_SUPPORTED:
             raise LineError(
                 f"cannot open {os.fspath(link)}: there are no pseudo terminals here", hint="use TCP"
             )
+        self._speed = None if baud is None else _speed(baud)
         self._server = server
         self._closed = False
         self._link = PtyLink(link)
@@ -66,7 +71,7 @@ class PtyDoor:
             raise
         for end in (self._master, self._slave):
             os.set_blocking(end, False)
-        self._line: SimulatedLine = server.simulation.line()
+        self._line: Line = server.simulation.line()
         self._backlog = bytearray()
         self._events = selectors.EVENT_READ
         server.selector.register(self._master, self._events, self._on_ready)
@@ -79,6 +84,8 @@ class PtyDoor:
                 data = os.read(self._master, _READ_BYTES)
                 if self._backlog:
                     self._drop_unread()
+                if self._speed not in {None, termios.tcgetattr(self._master)[_OUTPUT_SPEED]}:
+                    return  # at another speed there is nothing but framing errors
                 self._server.dispatch(self._line.receive(data, self._server.now()), self._deliver)
 
     def _deliver(self, data: bytes) -> None:
@@ -119,3 +126,17 @@ class PtyDoor:
         self._link.remove()
         os.close(self._master)
         os.close(self._slave)
+
+
+def _speed(baud: int) -> int:
+    """The system's name of a speed.
+
+    Raises:
+        UsageError: it has none.
+    """
+    speed = getattr(termios, f"B{baud}", None)
+    if speed is None:
+        raise UsageError(
+            f"--strict-baud: this system has no {baud} bits a second for a terminal", hint="such as 9600"
+        )
+    return int(speed)

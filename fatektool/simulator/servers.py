@@ -33,21 +33,20 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Callable, Iterator
 
-    from fatektool.simulator.build import Simulation
-    from fatektool.simulator.doors import Door
+    from fatektool.simulator.doors import Door, Lines
 
 _SPIN_S = 0.00012
 """How long before a due time the thread stops sleeping: a system's wake-up may be that late."""
 
 
 class Server:
-    """Doors to one simulation. Open them, then serve; one thread does all.
+    """Doors to one simulation or replay. Open them, then serve; one thread does all.
 
     Args:
-        simulation: the PLCs and how their lines behave.
+        simulation: gives each door its lines.
     """
 
-    def __init__(self, simulation: Simulation) -> None:
+    def __init__(self, simulation: Lines) -> None:
         self.simulation = simulation
         self.selector = selectors.DefaultSelector()
         self.now = time.perf_counter
@@ -70,9 +69,14 @@ class Server:
         """Listen on UDP; port 0 takes a free one. LineError if it cannot be had."""
         return self._opened(UdpDoor(self, host, port))
 
-    def open_pty(self, link: str | os.PathLike[str]) -> Door:
-        """Make a pseudo terminal with ``link`` pointing to it. LineError if it cannot be had."""
-        return self._opened(PtyDoor(self, link))
+    def open_pty(self, link: str | os.PathLike[str], baud: int | None = None) -> Door:
+        """Make a pseudo terminal with ``link`` pointing to it. LineError if it cannot be had.
+
+        Args:
+            link: the path that clients open.
+            baud: the only speed at which clients are understood; None for any.
+        """
+        return self._opened(PtyDoor(self, link, baud))
 
     def serve_until(self, stop: Callable[[], bool] = bool) -> None:
         """Serve until ``stop()`` of this server was called, or the predicate given here says so.

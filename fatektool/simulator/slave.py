@@ -2,7 +2,7 @@
 
 A line (see ``line``) carries bytes, paces them and spoils them; it knows no protocol. A slave cuts
 requests out of the bytes and answers them from its PLCs. To add a protocol, write one class with
-these four methods over ``SimulatedPlc``'s operations.
+these methods over ``SimulatedPlc``'s operations, and name it in ``slaves``.
 """
 
 from __future__ import annotations
@@ -19,9 +19,10 @@ BROADCAST = 0
 
 
 class RequestKind(Enum):
-    """What a request does, as far as the fault layer must know."""
+    """What a request does, as far as the fault layer and a replay must know."""
 
     OTHER = "other"
+    LOOPBACK = "loopback"
     WRITE = "write"
     PAGE_WRITE = "page-write"
 
@@ -52,6 +53,10 @@ class Slave(Protocol):
     @property
     def plcs(self) -> Mapping[int, SimulatedPlc]:
         """The PLCs of this line by station."""
+
+    @property
+    def delimiters(self) -> tuple[bytes, ...]:
+        """What begins and ends an answer, the end last: what noise must hold to be taken for one."""
 
     def cut(self, data: bytes) -> list[Request]:
         """Take bytes, whatever the chunking; give the requests that they complete."""

@@ -98,6 +98,19 @@ def test_faults_strike(cli: Cli) -> None:
         assert "in 2 tries of 0.1 s: nothing heard; is the PLC on and the cable in?" in one_line(done.err)
 
 
+def test_another_protocol_through_a_usb_adapter() -> None:
+    """The first worked example of the M-series paper, in STOP, at a tick of the adapter."""
+    with simulator("--tcp", ":0", "--protocol", "mseries", "--latency-timer", 5) as running:
+        (door,) = listening(running)
+        host, _, port = door.removeprefix("tcp://").rpartition(":")
+        with socket.create_connection((host, int(port)), timeout=10) as client:
+            client.sendall(bytes.fromhex("511000020140A18455AA"))
+            answer = b""
+            while len(answer) < 14 and (more := client.recv(14)):
+                answer += more
+    assert answer.hex().upper() == "521000060140000000002615" + "55AA"
+
+
 def test_a_port_in_use(cli: Cli) -> None:
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
@@ -120,6 +133,10 @@ def test_a_port_in_use(cli: Cli) -> None:
         (2, "--tcp :0 --fault drop=2", "a probability is a number from 0 to 1, not '2'"),
         (2, "--tcp :0 --fault drop=nan", "not 'nan'"),
         (2, "--tcp :0 --fault power-cut=0", "counted from 1"),
+        (2, "--tcp :0 --fault bit-errors=7", "a probability is a number from 0 to 1, not '7'"),
+        (2, "--tcp :0 --latency-timer nan", "a latency timer is of 0 ms or more, not nan"),
+        (2, "--tcp :0 --latency-timer -1", "-1.0 is not in the range 0<=x<=10000"),
+        (2, "--tcp :0 --protocol modbus", "'modbus' is not one of 'facon', 'mseries'"),
         (2, "--tcp :0 --fault drop=1 --fault drop=1", "given twice"),
         (2, "--tcp :0 --station 1 --station 1", "given twice"),
         (2, "--tcp :0 --station 0", "0 is not in the range 1<=x<=254"),

@@ -75,13 +75,14 @@ def test_pty_survives_its_clients(link: Path) -> None:
 
 @needs_pty
 def test_a_pty_without_power_is_silent_and_stays(link: Path) -> None:
-    server = Server(build_simulation(faults=["power-cut=1"]))
+    simulation = build_simulation(faults=["power-cut=1"])
+    server = Server(simulation)
     server.open_pty(link)
     door = server.open_tcp()
     with running(server), terminal(link) as client, connected(door) as witness:
         write_all(client, frame("500000" + PAGE_HEX) + ASK)
         assert read(witness, 1) == b""  # the power is gone
-        server.simulation.power_on()
+        simulation.power_on()
         assert exchange(client, ASK, len(ANSWER)) == ANSWER
 
 

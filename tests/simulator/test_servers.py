@@ -84,11 +84,11 @@ def test_an_answer_larger_than_the_buffers_comes_whole() -> None:
 
 @pytest.mark.parametrize("baud", [None, 921600.0])
 def test_paced_and_not(baud: float | None) -> None:
-    with tcp(baud=baud, faults=["duplicate=1"]) as (server, door), connected(door) as client:
+    with tcp(baud=baud, faults=["duplicate=1"]) as (_, door), connected(door) as client:
         page = frame("4F0001")
+        expected = frame("4F0" + build_simulation().plcs[1].pages[1].hex().upper())
         for _ in range(5):
             client.sendall(page)
-            expected = frame("4F0" + server.simulation.plcs[1].pages[1].hex().upper())
             assert read(client, 2 * len(expected)) == expected * 2
 
 
@@ -136,7 +136,8 @@ def test_udp_answers_the_sender() -> None:
 
 
 def test_power_cut_closes_connections_and_refuses_new_ones() -> None:
-    server = Server(build_simulation(faults=["power-cut=2"]))
+    simulation = build_simulation(faults=["power-cut=2"])
+    server = Server(simulation)
     doors = [server.open_tcp(), server.open_tcp()]
     with running(server), connected(doors[0]) as client, connected(doors[1]) as other:
         client.sendall(frame("500000" + PAGE_HEX))
@@ -148,7 +149,7 @@ def test_power_cut_closes_connections_and_refuses_new_ones() -> None:
         assert read(other, 100) == b""
         with connected(doors[0]) as refused:
             assert read(refused, 100) == b""
-        server.simulation.power_on()
+        simulation.power_on()
         with connected(doors[0]) as again:
             again.sendall(ASK)
             assert read(again, len(ANSWER)) == ANSWER
