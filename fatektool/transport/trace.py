@@ -7,7 +7,7 @@ r"""A record of the wire: what went out and what came in, with the time of each.
 ``.pcap``, for Wireshark: link type 147 (user 0), nanosecond time stamps; before the bytes of each record
 stands a pseudo-header of four bytes::
 
-    version 01 · direction 00 sent, 01 received · protocol 01 FACON, 02 M-series, 03 Modbus · 00
+    version 01 · direction 00 sent, 01 received · protocol (``PROTOCOL_CODES``) · 00
 
 Bytes that came in pieces make one record up to the next request or time-out, so that a frame is seldom split;
 of a line that babbles on, a record holds 32 KiB.
@@ -29,9 +29,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
+    from fatektool.transport.base import LineSettings
+
 LINK_TYPE: Final = 147
 PCAP_MAGIC: Final = 0xA1B23C4D  # nanoseconds, in the writer's byte order
-PROTOCOL_CODES: Final = {"facon": 1, "mseries": 2, "modbus-rtu": 3, "modbus-ascii": 3, "modbus-tcp": 3}
+PROTOCOL_CODES: Final = {"facon": 1, "mseries": 2, "modbus-rtu": 3, "modbus-ascii": 4, "modbus-tcp": 5}
 SENT: Final = "tx"
 RECEIVED: Final = "rx"
 _MAX_RECORD: Final = 1 << 15
@@ -153,6 +155,12 @@ class TracedTransport(Transport):
         if data:
             self._keep(data)
         return data
+
+    def set_line(self, line: LineSettings) -> None:
+        """Take another speed and format."""
+        self._flush()
+        self._inner.set_line(line)
+        self.line = self._inner.line
 
     def renew(self) -> None:
         """Start afresh."""

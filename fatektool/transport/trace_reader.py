@@ -6,6 +6,7 @@ import json
 import re
 import struct
 from dataclasses import dataclass
+from datetime import datetime
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import DataError
@@ -38,6 +39,11 @@ class TraceRecord:
     direction: str
     data: bytes
 
+    @property
+    def time_s(self) -> float:
+        """The time in seconds since 1970."""
+        return datetime.fromisoformat(self.time).timestamp()
+
 
 def read_trace(data: bytes, name: str) -> Iterator[TraceRecord]:
     """Read a trace file's bytes.
@@ -67,9 +73,16 @@ def _read_ndjson(data: bytes, name: str) -> Iterator[TraceRecord]:
             ) from error
         if record.direction not in {SENT, RECEIVED}:
             raise DataError(f"{name}: line {number}: expected direction tx or rx", hint=_HINT)
-        if not _TIME.fullmatch(record.time):
+        if not _is_time(record.time):
             raise DataError(f"{name}: line {number}: expected a time such as {time_text(0)}", hint=_HINT)
         yield record
+
+
+def _is_time(text: str) -> bool:
+    try:
+        return _TIME.fullmatch(text) is not None and datetime.fromisoformat(text) is not None
+    except ValueError:  # the 13th month
+        return False
 
 
 def _read_pcap(data: bytes, name: str) -> Iterator[TraceRecord]:

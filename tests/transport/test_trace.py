@@ -99,6 +99,32 @@ def test_a_conversation(tmp_path: Path, suffix: str) -> None:
     ]
 
 
+def test_both_forms_hold_the_same(tmp_path: Path) -> None:
+    class Both:
+        def __init__(self) -> None:
+            self.writers = [open_trace(tmp_path / f"line{suffix}", "facon") for suffix in WRITERS]
+
+        def record(self, time_ns: int, direction: str, data: bytes) -> None:
+            for writer in self.writers:
+                writer.record(time_ns, direction, data)
+
+        def close(self) -> None:
+            for writer in self.writers:
+                writer.close()
+
+    inner = MemoryTransport(Script([(0.1, ANSWERS[:4]), (0.2, ANSWERS[4:])], []))
+    with TracedTransport(inner, Both(), time_ns=counting(333_333_333)) as line:
+        line.write(ASKS)
+        line.read(100, 1.0)
+        line.read(100, 1.0)
+        line.write(ASKS)
+    first, second = (
+        list(read_trace((tmp_path / f"line{suffix}").read_bytes(), suffix)) for suffix in WRITERS
+    )
+    assert first == second
+    assert [record.direction for record in first] == ["tx", "rx", "tx"]
+
+
 @suffixes
 def test_a_time_out_ends_a_record(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"line{suffix}"
@@ -211,7 +237,10 @@ def test_pcap_of_a_big_endian_machine() -> None:
     assert list(read_trace(data, "line.pcap")) == [TraceRecord(T0, "rx", ASKS)]
 
 
-@pytest.mark.parametrize(("protocol", "code"), [("facon", 1), ("mseries", 2), ("modbus-rtu", 3)])
+@pytest.mark.parametrize(
+    ("protocol", "code"),
+    [("facon", 1), ("mseries", 2), ("modbus-rtu", 3), ("modbus-ascii", 4), ("modbus-tcp", 5)],
+)
 def test_pcap_names_the_protocol(protocol: str, code: int) -> None:
     file = io.BytesIO()
     PcapTrace(file, protocol).record(T0_NS, "tx", ASKS)
@@ -229,6 +258,10 @@ def test_pcap_names_the_protocol(protocol: str, code: int) -> None:
 )
 def test_time_text(time_ns: int, text: str) -> None:
     assert time_text(time_ns) == text
+
+
+def test_the_time_of_a_record_as_a_number() -> None:
+    assert TraceRecord("2026-11-22T03:15:00.123456Z", "tx", b"").time_s == pytest.approx(1_795_317_300.123456)
 
 
 def test_an_empty_trace_has_no_records(tmp_path: Path) -> None:
@@ -325,6 +358,7 @@ GOOD_LINE = b'{"time": "2026-11-22T03:15:00Z", "direction": "tx", "hex": "02"}\n
         b'{"time": "2026-11-22T03:15:00Z", "direction": null, "hex": "02"}',
         b'{"time": null, "direction": "tx", "hex": "02"}',
         b'{"time": "", "direction": "tx", "hex": "02"}',
+        b'{"time": "2026-13-22T03:15:00Z", "direction": "tx", "hex": "02"}',
         b'{"time": "yesterday", "direction": "tx", "hex": "02"}',
         b'{"time": 1795317300, "direction": "tx", "hex": "02"}',
         b'{"time": "2026-11-22T03:15:00Z", "direction": "tx", "hex": "02"',
