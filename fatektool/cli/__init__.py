@@ -45,23 +45,23 @@ def run(words: list[str]) -> int:  # noqa: PLR0911  # a way out a class of error
     try:
         return _invoke(words)
     except FatektoolError as error:
-        return report(error, as_json=as_json)
+        return failed(error, as_json=as_json)
     except click.ClickException as error:
-        return report(_usage(error), as_json=as_json)
+        return failed(_usage(error), as_json=as_json)
     except (click.Abort, KeyboardInterrupt):
         if sys.stderr.isatty():
             tell("")  # the terminal shows ^C, and no new line
-        return report(Interrupted("interrupted"), as_json=as_json)
+        return failed(Interrupted("interrupted"), as_json=as_json)
     except BrokenPipeError:  # whoever read our output has seen enough
         _drop_output()
         return UsageError.exit_code
     except Exception as error:  # the last door: no traceback for the user
         if isinstance(error, OSError) and error.errno in _OUTPUT_LOST and error.filename is None:
             _drop_output()
-            return report(_output_lost(error), as_json=as_json)
+            return failed(_output_lost(error), as_json=as_json)
         if os.environ.get("FATEKTOOL_TRACEBACK"):
             raise
-        return report(_fault(error), as_json=as_json)
+        return failed(_fault(error), as_json=as_json)
 
 
 def _invoke(words: list[str]) -> int:
@@ -87,7 +87,7 @@ class Interrupted(FatektoolError):
     exit_code = INTERRUPTED
 
 
-def report(error: FatektoolError, *, as_json: bool) -> int:
+def failed(error: FatektoolError, *, as_json: bool) -> int:
     """Say what went wrong: one line on stderr, and with ``--json`` a document on stdout."""
     if as_json:
         from fatektool.cli.documents import error_document

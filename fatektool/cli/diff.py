@@ -9,6 +9,8 @@ import click
 from fatektool.cli.differences import difference_lines
 from fatektool.cli.documents import differences
 from fatektool.cli.options import PATH, voice_options
+from fatektool.cli.report import report_option, write_report
+from fatektool.jobs.times import utc
 from fatektool.program.archive import load_backup
 from fatektool.program.compare import compare
 
@@ -21,8 +23,9 @@ if TYPE_CHECKING:
 @click.command("diff", epilog="Example: fatektool diff monday.json tuesday.json")
 @click.argument("a", type=PATH)
 @click.argument("b", type=PATH)
+@report_option
 @voice_options
-def diff_command(a: Path, b: Path, voice: Voice) -> int:
+def diff_command(a: Path, b: Path, voice: Voice, *, report: Path | None) -> int:
     """Compare the backups A and B: exit 0 if the programs are the same, 1 if not. Needs no PLC."""
     one, other = load_backup(a).program, load_backup(b).program
     found = compare(one, other)
@@ -33,4 +36,8 @@ def diff_command(a: Path, b: Path, voice: Voice) -> int:
         **differences(found),
     }
     voice.show(document, difference_lines(found, f"same: {len(one.pages)} pages", str(a), str(b)))
+    if report is not None:
+        from fatektool.report.program import diff_report
+
+        write_report(report, diff_report(document, one, other, time=utc()))
     return 0 if found.same else 1

@@ -12,6 +12,7 @@ import click
 
 from fatektool.cli.options import PATH, Connection, connection_options_but_format, voice_options
 from fatektool.cli.read import SELECTION, shown, warn_of
+from fatektool.cli.report import report_option, write_snapshot_report
 from fatektool.cli.snapshot_apply import apply_command
 from fatektool.errors import PlcError, UsageError
 from fatektool.jobs.selection import parse_items
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
 _LINE: Final = re.compile(r"\d[A-Za-z][\d.]{1,3}", re.ASCII)
 _LOOKED_AT: Final = 200
+_SERIES: Final = {"json", "ndjson"}
 _BACKUP: Final = b'"fatektool.backup/'
 F = TypeVar("F", bound="Callable[..., Any]")
 
@@ -51,7 +53,7 @@ def either_format(function: F) -> F:
                 f"--format {lines[0]}: expected one of {', '.join(FORMATS)}, or a line's format such as 8N1"
             )
         form = forms[0].lower() if forms else "json"
-        return function(*args, form=form, line_format=lines[0] if lines else "7E1", **rest)
+        return function(*args, form=form, line_format=lines[0] if lines else None, **rest)
 
     return with_formats  # type: ignore[return-value]  # click's decorators hand back what they get
 
@@ -106,6 +108,7 @@ def snapshot_command() -> None:
 @click.option(
     "--keep", metavar="N|DAYSd", help="Keep N snapshots, or those of so many days, in DIR or FILE.ndjson."
 )
+@report_option
 @either_format
 @connection_options_but_format
 def take_command(
@@ -120,6 +123,7 @@ def take_command(
     append: Path | None,
     form: str,
     keep: str | None,
+    report: Path | None,
 ) -> int:
     """Read data from the PLC."""
     items = selected(elements, spec, groups, whole=whole).items
@@ -128,10 +132,11 @@ def take_command(
     folder = _folder(output)
     if kept is not None and folder is None and append is None:
         raise UsageError("--keep goes with -o DIR/ or --append FILE")
-    if append is not None:
-        require_lines(append, kept)
-    if output is not None and folder is None:
-        _require_output(Path(output))
+    if report is not None and folder is not None and form not in _SERIES:
+        raise UsageError(
+            f"--report shows the snapshots in {folder}: expected --format json or ndjson, got {form}"
+        )
+    _require_places(output, folder, append, kept)
     with connection.open(voice) as plc:
         snapshot = _take(plc, items, whole=whole)
     text = FORMATS[form](snapshot)
@@ -145,6 +150,8 @@ def take_command(
         click.echo(as_json(snapshot), nl=False)
     elif output is None and append is None:
         click.echo(text, nl=False)
+    if report is not None:
+        write_snapshot_report(report, snapshot, append or folder)
     warn_of(snapshot.errors, voice)
     return PlcError.exit_code if snapshot.errors else 0
 
@@ -165,6 +172,14 @@ def _take(plc: Plc, items: list[SpecItem], *, whole: bool) -> Snapshot:
         return take_snapshot(plc, items)
     system = plc.detailed_status().system
     return take_snapshot(plc, everything(system), limits=limits(system))
+
+
+def _require_places(output: str | None, folder: Path | None, append: Path | None, kept: Keep | None) -> None:
+    """Check, before the PLC is asked, that the snapshot can be put where it shall go."""
+    if append is not None:
+        require_lines(append, kept)
+    if output is not None and folder is None:
+        _require_output(Path(output))
 
 
 def _require_output(path: Path) -> None:

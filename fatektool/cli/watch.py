@@ -14,9 +14,11 @@ from fatektool.cli.documents import error_document
 from fatektool.cli.options import PATH, Connection, Seconds, connection_options
 from fatektool.cli.output import tell
 from fatektool.cli.read import SELECTION, shown
+from fatektool.cli.report import report_option, watch_report
 from fatektool.cli.snapshot import selected
 from fatektool.errors import FatektoolError, LineError, PlcError
 from fatektool.jobs.snapshot import Snapshot, take_snapshot
+from fatektool.jobs.times import utc
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
     from fatektool.client import Plc
     from fatektool.jobs.snapshot_spec import SpecItem
     from fatektool.protocol.values import Value
+    from fatektool.report.rounds import Rounds
 
 _TREND: Final = 24
 _BARS: Final = "▁▂▃▄▅▆▇█"
@@ -50,6 +53,7 @@ _AROUND: Final = 4  # title, header, what is left out, and the line of the curso
     help="From round to round; by default interval_s of --spec, else 1.",
 )
 @click.option("--count", type=click.IntRange(1), help="So many rounds; by default until Ctrl-C.")
+@report_option
 @connection_options
 def watch_command(
     elements: tuple[str, ...],
@@ -60,22 +64,23 @@ def watch_command(
     groups: tuple[str, ...],
     interval: float | None,
     count: int | None,
+    report: Path | None,
 ) -> int:
     """Show values live."""
     wanted = selected(elements, spec, groups, whole=False)
     pace_s = next((pace for pace in (interval, wanted.interval_s) if pace is not None), 1.0)
     try:
-        with connection.open(voice) as plc:
-            rounds = _rounds(plc, wanted.items, pace_s, count, voice)
+        with connection.open(voice) as plc, watch_report(report, plc, voice) as kept:
+            rounds = _rounds(plc, wanted.items, pace_s, count, voice, kept=kept)
             last = _live(rounds, wanted.items) if sys.stdout.isatty() and not voice.json else _lines(rounds)
     except (FatektoolError, KeyboardInterrupt) as error:
         if not voice.json:
             raise
-        return _report(error)
+        return _failed(error)
     return PlcError.exit_code if last is not None and last.errors else 0
 
 
-def _report(error: FatektoolError | KeyboardInterrupt) -> int:
+def _failed(error: FatektoolError | KeyboardInterrupt) -> int:
     """Say what went wrong in one line of NDJSON, as all before it, and one on stderr."""
     from fatektool.cli import Interrupted
 
@@ -95,9 +100,24 @@ def _lines(rounds: Iterator[Snapshot]) -> Snapshot | None:
 
 
 def _rounds(
-    plc: Plc, items: list[SpecItem], interval_s: float, count: int | None, voice: Voice
+    plc: Plc,
+    items: list[SpecItem],
+    interval_s: float,
+    count: int | None,
+    voice: Voice,
+    *,
+    kept: Rounds | None,
 ) -> Iterator[Snapshot]:
-    """A snapshot a round, on time; a line that fails for long ends it."""
+    """A snapshot a round, on time; a line that fails for long ends it.
+
+    Args:
+        plc: the PLC.
+        items: what to read.
+        interval_s: from round to round.
+        count: so many rounds; None for no end.
+        voice: is told of rounds that failed.
+        kept: takes the rounds, for a report; None for none.
+    """
     due = time.monotonic()
     failures = done = 0
     while count is None or done < count:
@@ -105,12 +125,16 @@ def _rounds(
             snapshot = take_snapshot(plc, items)
         except LineError as error:
             failures += 1
+            if kept is not None:
+                kept.fail(utc(), error.message)
             if failures >= _MOST_FAILURES or not done:
                 raise
             voice.warn(f"{error.message}; trying on")
         else:
             failures = 0
             done += 1
+            if kept is not None:
+                kept.add(snapshot.document())
             yield snapshot
         due = max(due + interval_s, time.monotonic())
         if count is None or done < count:

@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from fatektool.jobs.snapshot import Snapshot
 
 _KEEP: Final = re.compile(r"([1-9][0-9]{0,8})(d?)", re.ASCII)
-_DATED: Final = re.compile(r"snapshot-st(\d\d+)-(\d{8}T\d{6}Z)(?:-(\d{1,9}))?\.(\w+)", re.ASCII)
+DATED: Final = re.compile(r"snapshot-st(\d\d+)-(\d{8}T\d{6}Z)(?:-(\d{1,9}))?\.(\w+)", re.ASCII)
+"""A dated file's name: station, time, the number of its second from 2, ending."""
 _START: Final = b'{"schema":"fatektool.snapshot/'
 _OBJECT: Final = re.compile(rb'\{[ \t]*"')
 _OURS: Final = re.compile(rb'\{[ \t]*"schema"[ \t]*:[ \t]*"fatektool\.snapshot/')
@@ -106,7 +107,7 @@ def encoded(text: str) -> bytes:
 def _drop_files(folder: Path, station: int, suffix: str, keep: Keep, now: datetime) -> None:
     dated = []
     for path in folder.iterdir():
-        match = _DATED.fullmatch(path.name)
+        match = DATED.fullmatch(path.name)
         if match and int(match[1]) == station and match[4] == suffix:
             dated.append((match[2], int(match[3] or 1), path))
     dated.sort()

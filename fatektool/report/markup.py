@@ -1,0 +1,150 @@
+"""Text becomes HTML here and nowhere else: what is no ``Html`` yet is escaped.
+
+A name from a PLC's file, a target, an error message may hold anything. ``<>&"'`` become references. What has
+no picture of its own (control characters, marks that turn the direction of writing, halves of a character) is
+shown as Python escapes it, so that nothing looks like what it is not.
+"""
+
+from __future__ import annotations
+
+import html
+import json
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+_VOID: Final = frozenset({"meta"})
+_WIDE: Final = 4
+DASH: Final = "–"  # noqa: RUF001  # an en dash is what stands for no value
+
+
+class Html(str):
+    """Text that is HTML already."""
+
+    __slots__ = ()
+
+
+NEWLINE: Final = Html("\n")
+"""Between elements, so that a person can read the source, and a mail programme break its lines."""
+
+
+def escape(text: str) -> Html:
+    """Text as HTML shows it, in an element or in a quoted attribute."""
+    if not text.isprintable():
+        text = "".join(each if each.isprintable() else _as_escape(each) for each in text)
+    return Html(html.escape(text))
+
+
+def _as_escape(character: str) -> str:
+    return character.encode("unicode_escape").decode("ascii")
+
+
+def markup(content: object) -> Html:
+    """Anything as HTML: ``Html`` as it is, everything else as escaped text."""
+    return content if isinstance(content, Html) else escape(str(content))
+
+
+def join(parts: Iterable[object], between: object = "") -> Html:
+    """Pieces one after the other."""
+    return Html(markup(between).join(markup(part) for part in parts))
+
+
+def tag(name: str, /, *content: object, **attributes: object) -> Html:
+    """An element.
+
+    Args:
+        name: ``p``, ``rect``.
+        content: what is in it.
+        attributes: ``class_`` is ``class``, ``aria_label`` is ``aria-label``. One that is None is left out,
+            one that is True has no value.
+    """
+    shown = "".join(_attribute(key, value) for key, value in attributes.items() if value is not None)
+    if name in _VOID:
+        return Html(f"<{name}{shown}>")
+    return Html(f"<{name}{shown}>{join(content)}</{name}>")
+
+
+def _attribute(name: str, value: object) -> str:
+    name = name.rstrip("_").replace("_", "-")
+    return f" {name}" if value is True else f' {name}="{escape(str(value))}"'
+
+
+def figure(value: object, shown: str | None = None, unit: str = "") -> Html:
+    """A figure of the document: what JSON has in the ``value`` of ``<data>``, and as people read it.
+
+    Args:
+        value: as the document has it: a number, a truth, a text, None.
+        shown: how it is written; by default the value itself, seven digits of a float, a dash for None.
+        unit: what stands behind it.
+    """
+    if shown is None:
+        shown = plain(value)
+    behind = f" {unit}" if unit and value is not None else ""
+    return tag("data", f"{shown}{behind}", value=json.dumps(value, allow_nan=False))
+
+
+def plain(value: object) -> str:
+    """A value as people read it."""
+    match value:
+        case None:
+            return DASH
+        case bool():
+            return "on" if value else "off"
+        case float():
+            return f"{value:.7g}"
+        case _:
+            return str(value)
+
+
+def counted(number: int, noun: str) -> str:
+    """``1 word``, ``2 words``."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
+def when(time: str | None) -> Html:
+    """A time of a document, RFC 3339 in UTC, as people read it."""
+    if time is None:
+        return escape(DASH)
+    return tag("time", f"{time.removesuffix('Z').replace('T', ' ')} UTC", datetime=time)
+
+
+def percent(ratio: object) -> str:
+    """A ratio of 0 to 1 in per cent, three digits."""
+    return f"{ratio * 100:.3g} %" if isinstance(ratio, int | float) else DASH
+
+
+def table(
+    caption: str,
+    head: Sequence[object],
+    rows: Iterable[Sequence[object]],
+    *,
+    numeric: Iterable[int] = (),
+    scroll: bool | None = None,
+) -> Html:
+    """A table; the first cell of a row names it.
+
+    Args:
+        caption: what it shows.
+        head: the columns' names.
+        rows: their cells.
+        numeric: the columns that stand at the right.
+        scroll: in a narrow window the table moves, not the page; by default one of many columns.
+    """
+    right = set(numeric)
+    classes = ["n" if number in right else None for number in range(len(head))]
+    top = (tag("th", name, scope="col", class_=each) for name, each in zip(head, classes, strict=True))
+    body = (
+        tag(
+            "tr",
+            tag("th", row[0], scope="row", class_=classes[0]),
+            *(tag("td", cell, class_=each) for cell, each in zip(row[1:], classes[1:], strict=True)),
+        )
+        for row in rows
+    )
+    whole = tag(
+        "table", tag("caption", caption), tag("thead", tag("tr", *top)), tag("tbody", join(body, NEWLINE))
+    )
+    if not (len(head) > _WIDE if scroll is None else scroll):
+        return whole
+    return tag("div", whole, class_="scroll", role="region", aria_label=caption, tabindex="0")

@@ -1,0 +1,210 @@
+"""``verify`` and ``diff``: a map of the pages, what changed, and the words of both sides in hex.
+
+The figures are the document's. The words that did not change are not in it, so the first program is given
+with it; the second follows from the two, but for pages that the first does not have.
+"""
+
+from __future__ import annotations
+
+import struct
+from typing import TYPE_CHECKING, Any, Final
+
+from fatektool.program.image import PAGE_WORDS, page_count
+from fatektool.report.markup import DASH, Html, counted, figure, table, tag, when
+from fatektool.report.page import Report, Verdict, code, note, render, section
+from fatektool.report.page_map import page_map
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from fatektool.program.image import Program
+
+MOST_PAGES: Final = 64
+_ROW: Final = 8
+_PLACES_SHOWN: Final = 12
+
+
+def verify_report(document: Mapping[str, Any], program: Program) -> str:
+    """The PLC's program against a backup.
+
+    Args:
+        document: ``fatektool.verify/1``.
+        program: the backup's.
+    """
+    where = f"station {document['station']} on {document['target']}"
+    facts = [
+        ("Backup", code(document["file"])),
+        ("SHA-256 of the backup's program", code(document["sha256"])),
+        ("PLC", f"{where}, {document['protocol']}"),
+        ("Time", when(document["time"])),
+    ]
+    title, what = "Program on file and in the PLC", f"{document['file']} and {where}"
+    return _report(document, (program, None), ("file", "PLC"), (title, what, document["time"]), facts)
+
+
+def diff_report(document: Mapping[str, Any], a: Program, b: Program, *, time: str) -> str:
+    """Two backups against each other.
+
+    Args:
+        document: ``fatektool.diff/1``.
+        a: the first program.
+        b: the second.
+        time: the present, UTC, RFC 3339.
+    """
+    facts: list[tuple[str, object]] = []
+    for side in ("a", "b"):
+        facts += [
+            (f"Backup {side.upper()}", code(document[side]["file"])),
+            (f"SHA-256 of {side.upper()}'s program", code(document[side]["sha256"])),
+        ]
+    what = f"{document['a']['file']} (A) and {document['b']['file']} (B)"
+    return _report(document, (a, b), ("A", "B"), ("Two programs", what, time), facts)
+
+
+def _report(
+    document: Mapping[str, Any],
+    programs: tuple[Program, Program | None],
+    sides: tuple[str, str],
+    names: tuple[str, str, str],
+    facts: Sequence[tuple[str, object]],
+) -> str:
+    """The report.
+
+    Args:
+        document: either.
+        programs: the first, and the second where it is at hand.
+        sides: what the two are called.
+        names: title, what of, and when.
+        facts: what stands at the top, before the sizes.
+    """
+    title, what, time = names
+    sizes = document["a_ladder_words"], document["b_ladder_words"]
+    sized = [
+        (f"Ladder size, {side}", figure(size, unit="words")) for side, size in zip(sides, sizes, strict=True)
+    ]
+    counts = [
+        ("Pages that differ", figure(document["pages_differ"])),
+        ("Words that differ", figure(document["words_differ"])),
+    ]
+    sections = [_map(document)]
+    if document["differences"]:
+        sections += [_changes(document, sides), _words(document, programs, sides)]
+    return render(
+        Report(
+            title,
+            what,
+            _verdict(document, sides),
+            [*facts, *sized, *counts],
+            sections,
+            document["schema"],
+            time,
+        )
+    )
+
+
+def _verdict(document: Mapping[str, Any], sides: tuple[str, str]) -> Verdict:
+    if document["same"]:
+        return Verdict(
+            "Same", f"The two programs are equal, all {_pages(document)} pages of them.", good=True
+        )
+    sizes = document["a_ladder_words"], document["b_ladder_words"]
+    said = []
+    if sizes[0] != sizes[1]:
+        said.append(f"The ladder size is {sizes[0]} words ({sides[0]}) and {sizes[1]} words ({sides[1]}).")
+    if document["differences"]:
+        words = counted(document["words_differ"], "word")
+        said.append(f"{words} in {counted(document['pages_differ'], 'page')} of {_pages(document)}.")
+    return Verdict("Different", " ".join(said), good=False)
+
+
+def _pages(document: Mapping[str, Any]) -> int:
+    return page_count(max(document["a_ladder_words"], document["b_ladder_words"]))
+
+
+def _map(document: Mapping[str, Any]) -> Html:
+    if not document["differences"] and not document["same"]:
+        return section(
+            "Map of the pages",
+            note("The sizes differ: the PLC's pages were not read, as they cannot be the ones on file."),
+        )
+    changed = {page["page"]: len(page["words"]) or None for page in document["differences"]}
+    said = "Page 0 is the program's header. A page is 64 words."
+    drawn = page_map("map", "The program's pages", _pages(document), changed)
+    return section("Map of the pages", tag("p", said), tag("figure", drawn))
+
+
+def _changes(document: Mapping[str, Any], sides: tuple[str, str]) -> Html:
+    rows = []
+    for number, page in enumerate(document["differences"]):
+        shown = figure(page["page"])
+        name = tag("a", shown, href=f"#page-{page['page']}") if number < MOST_PAGES else shown
+        places = [word["word"] for word in page["words"]]
+        more = len(places) - _PLACES_SHOWN
+        text = ", ".join(map(str, places[:_PLACES_SHOWN])) + (f" and {more} more" if more > 0 else "")
+        rows.append((name, figure(len(places)) if places else DASH, text or "only in one of the two"))
+    return section(
+        "Pages that differ",
+        table(f"From {sides[0]} to {sides[1]}", ("Page", "Words", "Which words"), rows, numeric=(0, 1)),
+    )
+
+
+def _words(
+    document: Mapping[str, Any], programs: tuple[Program, Program | None], sides: tuple[str, str]
+) -> Html:
+    pages = document["differences"]
+    said = [tag("p", "Words in hex. Those that differ are bold and underlined.")]
+    if len(pages) > MOST_PAGES:
+        left = len(pages) - MOST_PAGES
+        said.append(
+            note(
+                f"The first {MOST_PAGES} pages that differ are shown. The other {left} are in the table; "
+                f"their words are in the JSON document (--json)."
+            )
+        )
+    return section("Side by side", *said, *(_page(page, programs, sides) for page in pages[:MOST_PAGES]))
+
+
+def _page(page: Mapping[str, Any], programs: tuple[Program, Program | None], sides: tuple[str, str]) -> Html:
+    number = page["page"]
+    changed = {word["word"]: (word["a"], word["b"]) for word in page["words"]}
+    one = _page_words(programs[0], number)
+    other = _page_words(programs[1], number)
+    if one is not None and changed:
+        other = [changed[place][1] if place in changed else text for place, text in enumerate(one)]
+    shown = [
+        _side(f"Page {number}, {side}", words, changed)
+        for side, words in zip(sides, (one, other), strict=True)
+    ]
+    heading = f"Page {number}" + (f", {counted(len(changed), 'word')} of {PAGE_WORDS}" if changed else "")
+    return tag(
+        "section",
+        tag("h3", heading),
+        tag("div", *shown, class_="sides"),
+        _list(page, sides) if changed else "",
+        id=f"page-{number}",
+        class_="page",
+    )
+
+
+def _page_words(program: Program | None, number: int) -> list[str] | None:
+    if program is None or number >= len(program.pages):
+        return None
+    return [f"{word:04X}" for word in struct.unpack(f">{PAGE_WORDS}H", program.pages[number])]
+
+
+def _side(caption: str, words: Sequence[str] | None, changed: Mapping[int, Any]) -> Html:
+    if words is None:
+        return tag("p", f"{caption}: not in this program.")
+    rows = [
+        (start, *(tag("mark", words[place]) if place in changed else words[place] for place in places))
+        for start, places in ((start, range(start, start + _ROW)) for start in range(0, PAGE_WORDS, _ROW))
+    ]
+    head = (tag("span", "word", class_="hidden"), *(f"+{place}" for place in range(_ROW)))
+    return tag("div", table(caption, head, rows, scroll=False), class_="hex")
+
+
+def _list(page: Mapping[str, Any], sides: tuple[str, str]) -> Html:
+    """What changed, word by word: for those who do not see the marks, and for copying."""
+    rows = [(figure(word["word"]), tag("code", word["a"]), tag("code", word["b"])) for word in page["words"]]
+    caption = f"Page {page['page']}, the words that differ"
+    return tag("details", tag("summary", caption), table(caption, ("Word", *sides), rows, numeric=(0,)))
