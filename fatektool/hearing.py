@@ -11,14 +11,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from fatektool.counters import Counters
-from fatektool.errors import FrameError
+from fatektool.errors import FrameError, TransportTimeout
 from fatektool.protocol.commands import Command
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from fatektool.protocol.codec import Decoder, Frame
     from fatektool.transport.base import Transport
 
 _MOST_PATIENCE: Final = 4
+_READ_BYTES: Final = 4096
 
 
 class Hearing:
@@ -34,6 +37,8 @@ class Hearing:
         suspicions: how often something came that may have been an answer gone astray.
         doubt: True until a fence proves that nothing else can come.
         patience: by how much a PLC that answers late gets more time.
+        on_stray: is shown each good frame that answers nothing asked then.
+        on_bad_bytes: is shown what was no frame.
         words: what was heard instead of an answer, for messages; empty for silence.
     """
 
@@ -43,6 +48,8 @@ class Hearing:
         self.suspicions = 0
         self.doubt = False
         self.patience = 1
+        self.on_stray: Callable[[Frame], object] = _to_nobody
+        self.on_bad_bytes: Callable[[FrameError], object] = _to_nobody
         self.words = ""
         self._transport = transport
         self._station = station
@@ -67,6 +74,7 @@ class Hearing:
     def bad_bytes(self, error: FrameError) -> None:
         """Bytes that are no frame."""
         self.doubt = True
+        self.on_bad_bytes(error)
         if error.checksum:
             self.counters.checksum_errors += 1
             self.words = f"a damaged frame ({error.message})"
@@ -77,6 +85,7 @@ class Hearing:
     def stray(self, frame: Frame) -> None:
         """A good frame that answers nothing asked now."""
         self.counters.strays += 1
+        self.on_stray(frame)
         self.doubt = True
         if frame.station != self._station:
             self.words = f"station {frame.station} instead"
@@ -105,6 +114,28 @@ class Hearing:
         self.doubt = True
         if left:
             self.suspicions += 1
+        self._overhear(found)
+        if self.decoder.clear():
+            self.suspicions += 1
+        return True
+
+    def listen_until(self, moment: float) -> None:
+        """Wait until a moment of the transport's clock, and look at whatever comes unasked.
+
+        Raises:
+            TransportClosed: the line is gone.
+        """
+        while (rest := moment - self._transport.clock()) > 0:
+            try:
+                found = self._transport.read(_READ_BYTES, rest)
+            except TransportTimeout:
+                continue
+            self.counters.bytes_heard += len(found)
+            self.doubt = True
+            self._overhear(found)
+
+    def _overhear(self, found: bytes) -> None:
+        """Look at bytes that nobody asked for."""
         self.decoder.feed(found)
         while True:
             try:
@@ -114,8 +145,9 @@ class Hearing:
                 self.suspicions += 1
                 continue
             if frame is None:
-                break
+                return
             self.stray(frame)
-        if self.decoder.clear():
-            self.suspicions += 1
-        return True
+
+
+def _to_nobody(_: object) -> None:
+    pass

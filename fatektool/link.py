@@ -91,6 +91,7 @@ class Link:
         self.retries = retries
         self.hearing = Hearing(transport, codec.decoder(), station)
         self.counters = self.hearing.counters
+        self.line = line
         self.byte_time_s = line.byte_time_s
         self._nonces = nonces
         self._note = note
@@ -119,8 +120,8 @@ class Link:
                     raise self._silence(request, closed) from error
             try:
                 if self.echoes is None and self.codec.echo_may_pass(request):
-                    self._learn_echo()
-                return self._exchange(request)
+                    self.learn_echo()
+                return self.try_once(request)
             except (TransportError, FrameError) as error:
                 failure = error
             if request.writes and self._took(request):
@@ -150,9 +151,9 @@ class Link:
         for _ in range(self.retries + 1):
             nonce = Loopback(self._nonces())
             try:
-                if self.echoes is None:
-                    self._learn_echo()
-                self._exchange(nonce)
+                if self.echoes is None and self.codec.echo_may_pass(nonce):
+                    self.learn_echo()
+                self.try_once(nonce)
             except (TransportError, FrameError) as error:
                 failure = error
                 continue
@@ -185,16 +186,22 @@ class Link:
 
     # --- one try ----------------------------------------------------------------------------------
 
-    def _learn_echo(self) -> None:
-        """Ask what cannot be mistaken for its own echo, and hear whether the line echoes."""
-        self._exchange(ReadBriefStatus())
+    def learn_echo(self) -> None:
+        """Ask what cannot be mistaken for its own echo, and hear whether the line echoes.
+
+        Raises:
+            LineError: nothing was learnt by this try; the PLC may not even have answered.
+        """
+        self.try_once(ReadBriefStatus())
         if self.echoes is None:
             self.hearing.doubt = True
             self.hearing.words = self.hearing.words or "more than one answer"
             raise FrameError("something beside the answer: it may have been an echo or not")
 
-    def _exchange(self, request: Request[A]) -> A:
+    def try_once(self, request: Request[A]) -> A:
         """Send a request once and wait for its answer.
+
+        Whether the line echoes is the caller's to know before it sends what its own echo would answer.
 
         Raises:
             TransportTimeout, TransportClosed, FrameError: this try has failed, and left a doubt.
@@ -242,8 +249,7 @@ class Link:
                     continue
                 if isinstance(request, Loopback) and answer != request.data:
                     self.hearing.words = "another loopback's answer"
-                    self.counters.strays += 1
-                    self.hearing.doubt = True
+                    self.hearing.stray(frame)
                     continue
                 self._silent_tries = 0
                 self.answered.add(request.command)
@@ -267,6 +273,8 @@ class Link:
                 return frame
             rest = deadline - self.transport.clock()
             if rest <= 0:
+                if self.hearing.decoder.expect_no_more():
+                    continue
                 raise TransportTimeout(f"{self.transport.name}: no answer in time")
             try:
                 data = self.transport.read(_READ_BYTES, rest)

@@ -38,6 +38,9 @@ JOBS: Final[dict[str, dict[str, Entry]]] = {
         "discrete": Entry("discrete", "Enable, disable, set, reset and list discretes."),
     },
     "The line": {
+        "doctor": Entry("doctor", "Examine a PLC and its line; say what is wrong."),
+        "loopback": Entry("loopback", "Stress the line; count and time what comes back."),
+        "scan": Entry("scan", "Find who answers: station, baud, format, protocol."),
         "ports": Entry("ports", "List the serial ports of this computer."),
         "decode": Entry("decode", "Explain frames, given as hex or from a trace."),
     },

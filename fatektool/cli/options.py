@@ -15,8 +15,11 @@ from fatektool.errors import UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from contextlib import ExitStack
 
     from fatektool.client import Plc
+    from fatektool.protocol.commands import Command
+    from fatektool.transport.base import Transport
 
 
 class Seconds(click.FloatRange):
@@ -30,10 +33,24 @@ class Seconds(click.FloatRange):
         return seconds
 
 
+class Several(click.ParamType):  # type: ignore[type-arg]  # a generic in the newest click only
+    """Values with commas between them, each read by a type of its own."""
+
+    def __init__(self, each: click.ParamType) -> None:  # type: ignore[type-arg]
+        self.name = each.name
+        self._each = each
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Read each of them."""
+        if isinstance(value, tuple):
+            return value
+        return tuple(self._each.convert(part.strip(), param, ctx) for part in value.split(","))
+
+
 F = TypeVar("F", bound="Callable[..., Any]")
 
 PATH = click.Path(path_type=Path)
-PROTOCOLS = ("facon",)
+PROTOCOLS = ("facon", "mseries")
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,8 +67,8 @@ class Connection:
     lock_wait_s: float
     trace: Path | None
 
-    def open(self, voice: Voice) -> Plc:
-        """Open the line."""
+    def open(self, voice: Voice, *, needs: tuple[Command, ...] = ()) -> Plc:
+        """Open the line, if the protocol has the commands that are needed."""
         from fatektool.connection import connect
 
         return connect(
@@ -62,6 +79,23 @@ class Connection:
             format=self.format,
             timeout_s=self.timeout_s,
             retries=self.retries,
+            lock_wait_s=self.lock_wait_s,
+            trace=self.trace,
+            needs=needs,
+            note=voice.detail,
+        )
+
+    def open_line(self, voice: Voice, stack: ExitStack) -> Transport:
+        """Open the line alone, for who asks more than one PLC on it; ``stack`` closes it."""
+        from fatektool.connection import open_line
+        from fatektool.transport.base import LineSettings
+
+        return open_line(
+            self.target,
+            stack,
+            LineSettings(self.baud, self.format),
+            protocol=self.protocol,
+            station=self.station,
             lock_wait_s=self.lock_wait_s,
             trace=self.trace,
             note=voice.detail,
@@ -84,7 +118,10 @@ def voice_options(function: F) -> F:
 def connection_options(function: F) -> F:
     """All that says where a PLC is; the command gets ``connection`` and ``voice``."""
     line_format = click.option(
-        "--format", "line_format", default="7E1", show_default=True, help="Data bits, parity, stop bits."
+        "--format",
+        "line_format",
+        metavar="7E1",
+        help="Data bits, parity, stop bits.  [default: 7E1; 8E1 for mseries]",
     )
     return line_format(connection_options_but_format(function))
 
@@ -103,7 +140,13 @@ def connection_options_but_format(function: F) -> F:
     @click.option(
         "-s", "--station", type=click.IntRange(1, 254), default=1, show_default=True, help="Its station."
     )
-    @click.option("--protocol", type=click.Choice(PROTOCOLS), default="facon", show_default=True)
+    @click.option(
+        "--protocol",
+        type=click.Choice(PROTOCOLS),
+        default="facon",
+        show_default=True,
+        help="What the PLC speaks: facon (FB, FBE, FBN, FBs) or mseries (M-series).",
+    )
     @click.option("--baud", type=int, default=9600, show_default=True, help="Speed of the serial line.")
     @click.option(
         "--timeout",
@@ -137,7 +180,7 @@ def connection_options_but_format(function: F) -> F:
         station: int,
         protocol: str,
         baud: int,
-        line_format: str,
+        line_format: str | None,
         timeout: float,
         retries: int,
         lock_wait: float,
@@ -148,9 +191,10 @@ def connection_options_but_format(function: F) -> F:
             raise UsageError(
                 "no PLC named", hint="give --port, such as -p /dev/ttyUSB0 or -p sim:, or set FATEKTOOL_PORT"
             )
-        line = Connection(
-            port, station, protocol, baud, line_format.upper(), timeout, retries, lock_wait, trace
-        )
+        from fatektool.connection import usual_format
+
+        form = usual_format(protocol) if line_format is None else line_format.upper()
+        line = Connection(port, station, protocol, baud, form, timeout, retries, lock_wait, trace)
         return function(*args, connection=line, **rest)
 
     return with_connection  # type: ignore[return-value]  # as above

@@ -93,9 +93,14 @@ class Voice:
                 return False
             tell("please answer y or n")
 
-    def progress(self) -> Bar:
+    def progress(self, unit: str = "pages") -> Bar:
         """A progress bar for a ``with`` statement; nothing where it would be noise."""
-        return Bar(shown=not self.quiet and sys.stderr.isatty())
+        return Bar(unit, shown=shows_progress(self))
+
+
+def shows_progress(voice: Voice) -> bool:
+    """True if somebody watches, and wants to."""
+    return not voice.quiet and sys.stderr.isatty()
 
 
 def can_ask() -> bool:
@@ -112,9 +117,15 @@ def table(rows: Iterable[tuple[str, object]]) -> Iterator[str]:
 
 
 class Bar:
-    """Pages done, rate and time left, on a terminal; ``update`` is a job's progress callback."""
+    """What is done, rate and time left, on a terminal; ``update`` is a job's progress callback.
 
-    def __init__(self, *, shown: bool) -> None:
+    Args:
+        unit: what is counted.
+        shown: False for nothing at all.
+    """
+
+    def __init__(self, unit: str, *, shown: bool) -> None:
+        self._unit = unit
         self._shown = shown
         self._tasks: dict[str, TaskID] = {}
         self.update: Progress = no_progress
@@ -128,11 +139,12 @@ class Bar:
                 TextColumn("{task.description}"),
                 BarColumn(bar_width=None),
                 MofNCompleteColumn(),
-                TextColumn("pages {task.fields[rate]}"),
+                TextColumn(f"{self._unit} {{task.fields[rate]}}"),
                 TimeRemainingColumn(elapsed_when_finished=True),
                 console=Console(stderr=True),
                 expand=True,
                 refresh_per_second=5,
+                redirect_stdout=False,  # data may go to a file while the bar is on the terminal
             )
             self._rich.start()
             self.update = self._update
@@ -143,6 +155,14 @@ class Bar:
     ) -> None:
         if self._shown:
             self._rich.stop()
+
+    def print(self, text: str) -> None:
+        """Print a line of data on stdout, above the bar if both are on one terminal."""
+        if self._shown and sys.stdout.isatty():
+            self._rich.console.print(text, markup=False, highlight=False, soft_wrap=True)
+        else:
+            click.echo(text)
+            sys.stdout.flush()
 
     def pause(self) -> None:
         """Take the bar off the screen, for a question."""

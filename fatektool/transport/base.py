@@ -122,6 +122,13 @@ class Transport(ABC):
     def close(self) -> None:
         """Close the medium; again is fine."""
 
+    def set_line(self, line: LineSettings) -> None:  # noqa: B027  # most media have no speed of their own
+        """Take another speed and format, if the medium has any.
+
+        Raises:
+            LineError: it does not take these.
+        """
+
     def renew(self) -> None:  # noqa: B027  # most media have nothing to renew
         """Start afresh after a long silence: a connection is made anew at the next write."""
 

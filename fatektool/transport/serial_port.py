@@ -5,7 +5,7 @@ pyserial's time-out anew for each read would reconfigure the port each time. Oth
 one short time-out for good, and longer ones are made of it.
 
 A pseudo terminal has neither parity nor 7 bits, and Linux refuses such a format from its second opening
-on, so it is opened as 8N1: nothing is lost, as a pty's bytes pass whole.
+on, so it is opened as 8N1, at the speed asked for: nothing is lost, as a pty's bytes pass whole.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 _SLICE_S: Final = 0.02
-_PTY: Final = LineSettings(9600, "8N1")
+_PTY_FORMAT: Final = "8N1"
 
 
 def open_serial(
@@ -46,15 +46,38 @@ def open_serial(
     pty = _is_pty(target)
     if pty:
         note(f"{target} is a pseudo terminal, which has no {line.format}: opened as 8N1")
-    port = _open(target, _PTY if pty else line)
+    port = _open(target, _of_pty(line) if pty else line)
     if low_latency and not pty and sys.platform == "linux" and "://" not in target:
         try:
             port.set_low_latency_mode(True)
         except (ValueError, OSError, NotImplementedError) as error:
             note(f"{target}: the driver has no low latency mode: {error}")
     if hasattr(port, "fd") and os.name == "posix" and "://" not in target:  # spy:// wants to be asked
-        return DeviceTransport(target, line, port)
+        return DeviceTransport(target, line, port, pty=pty)
     return SerialTransport(target, line, port)
+
+
+def _of_pty(line: LineSettings) -> LineSettings:
+    return LineSettings(line.baud, _PTY_FORMAT)
+
+
+def _set_line(target: str, line: LineSettings, port: Any) -> None:
+    """Another speed and format for an open port."""
+    try:
+        port.apply_settings(
+            {
+                "baudrate": line.baud,
+                "bytesize": line.data_bits,
+                "parity": line.parity,
+                "stopbits": line.stop_bits,
+            }
+        )
+    except (OSError, ValueError, NotImplementedError) as error:
+        raise _open_error(target, line, error) from error
+    except Exception as error:  # as when opening
+        if type(error).__name__ != "error" and "://" not in target:
+            raise
+        raise _open_error(target, line, error) from error
 
 
 def _open(target: str, line: LineSettings) -> Any:
@@ -165,6 +188,11 @@ class SerialTransport(Transport):
                 taken += self._port.read(min(waiting, 4096))
         return bytes(taken)
 
+    def set_line(self, line: LineSettings) -> None:
+        """Take another speed and format."""
+        _set_line(self.name, line, self._port)
+        self.line = str(line)
+
     def close(self) -> None:
         """Close the port."""
         connection = getattr(self._port, "_socket", None)  # of a URL; pyserial leaves a broken one open
@@ -177,10 +205,11 @@ class SerialTransport(Transport):
 class DeviceTransport(Transport):
     """A device on a POSIX system, through its file descriptor."""
 
-    def __init__(self, name: str, line: LineSettings, port: Any) -> None:
+    def __init__(self, name: str, line: LineSettings, port: Any, *, pty: bool = False) -> None:
         self.name = name
         self.line = str(line)
         self._port = port
+        self._pty = pty
         self._descriptor: int = port.fd
         self._readable: Callable[[float], bool] = readable(self._descriptor)
         self._writable: Callable[[float], bool] = writable(self._descriptor)
@@ -230,6 +259,11 @@ class DeviceTransport(Transport):
                 while len(taken) < DRAIN_LIMIT and (data := os.read(self._descriptor, 4096)):
                     taken += data
         return bytes(taken)
+
+    def set_line(self, line: LineSettings) -> None:
+        """Take another speed and format; of a pty, the speed alone."""
+        _set_line(self.name, _of_pty(line) if self._pty else line, self._port)
+        self.line = str(line)
 
     def close(self) -> None:
         """Close the port."""

@@ -35,6 +35,13 @@ ANSWERS = """\
 0 mode: run -p PLC [running]
 0 mode: stop -p PLC --yes [running]
 0 mode: stop -p PLC
+0 loopback: loopback -p PLC --count 24
+0 loopback: loopback -p PLC --duration 0.01 --sizes 0,256 --pattern random --seed 7 --max-p99 1000
+1 loopback: loopback -p PLC -s 9 --count 2 --timeout 0.01
+0 doctor: doctor -p PLC
+1 doctor: doctor -p PLC [battery_low]
+1 doctor: doctor -p PLC -s 9 --timeout 0.01
+0 scan: scan -p PLC --stations 1-3,7 --timeout 0.01
 0 ports: ports
 0 decode: decode 02 30 31 34 30 43 37 03
 0 schemas: schema
@@ -113,6 +120,32 @@ ERRORS = r"""
     'hello' is neither hex digits in pairs nor a trace
 2 decode LONG
     neither hex
+2 loopback -p PLC --sizes 257
+    257 is not in the range 0<=x<=256
+2 loopback -p PLC --sizes 1,x
+    'x' is not a valid integer
+2 loopback -p PLC --pattern zeros
+    'zeros' is not one of 'ramp', 'random', 'alternate', 'ones'
+2 loopback -p PLC --max-error-rate 2
+    2.0 is not in the range
+2 loopback -p PLC --count 0
+    0 is not in the range
+2 scan -p PLC --stations 0-3
+    '0-3': expected stations from 1 to 254
+2 scan -p PLC --stations 9-3
+    expected the lower station first
+2 scan -p PLC --bauds 9600,19200
+    no speed and format to try
+2 scan -p PLC --bauds 10
+    baud: expected 50 to 4000000, got 10
+2 scan -p PLC --protocols nope
+    'nope' is not
+3 loopback -p /dev/nope
+    /dev/nope: no such port
+3 scan -p /dev/nope
+    /dev/nope: no such port
+3 doctor -p /dev/nope
+    /dev/nope: no such port
 3 status -p /dev/nope
     /dev/nope: no such port; 'fatektool ports'
 3 status -p tcp://127.0.0.1:1

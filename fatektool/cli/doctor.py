@@ -1,0 +1,47 @@
+"""``doctor``: a short examination of a PLC and its line."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fatektool.cli.line_documents import doctor_document
+from fatektool.cli.loopback_view import findings
+from fatektool.cli.options import Connection, connection_options
+from fatektool.jobs.doctor import examine
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from fatektool.cli.output import Voice
+
+
+@click.command("doctor", epilog="Example: fatektool doctor -p /dev/ttyUSB0")
+@connection_options
+def doctor_command(connection: Connection, voice: Voice) -> int:
+    """Examine a PLC and its line: what is wrong, what says so, and what to do.
+
+    Takes ten seconds or so; writes nothing. Where a serial line is silent, the usual speeds and formats are
+    tried, which takes half a minute. Exit 1 if there is a fault.
+    """
+    with connection.open(voice) as plc, voice.progress("steps") as bar:
+        found = examine(plc, bar.update)
+        document = doctor_document(plc, found)
+    voice.show(document, _lines(document))
+    return 0 if found.healthy else 1
+
+
+def _lines(document: dict[str, Any]) -> Iterator[str]:
+    test = document["loopback"]
+    line = f" ({document['line']})" if document["line"] else ""
+    yield f"station {document['station']} on {document['target']}{line}, {document['protocol']}"
+    times = test["latency_ms"]
+    took = "" if times["p50"] is None else f", half of them within {times['p50']:.1f} ms"
+    yield f"loopback test: {test['ok']} of {test['sent']} came back{took}"
+    if document["status"] is not None:
+        yield f"the PLC is in {'RUN' if document['status']['running'] else 'STOP'}"
+    yield ""
+    yield from findings(document["findings"])
+    if document["healthy"]:
+        yield "nothing is wrong"

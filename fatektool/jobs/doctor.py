@@ -1,0 +1,159 @@
+"""A short examination of a PLC and its line: what is wrong, by what evidence, and what to do.
+
+A short loopback test comes first, its rules are ``diagnosis``. If the line works, the brief status (40) tells
+what the PLC itself has to complain of. If it does not, and it has a speed, the usual speeds and formats are
+tried: a PLC that answers there explains the silence here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+
+from fatektool.errors import LineError, PlcError, TransportClosed
+from fatektool.jobs.diagnosis import diagnose
+from fatektool.jobs.finding import Case, Finding
+from fatektool.jobs.loopback import run_loopback
+from fatektool.jobs.loopback_result import LoopbackPlan
+from fatektool.jobs.scan import Setting, Station, scan
+from fatektool.transport.base import LineSettings
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fatektool.client import Plc
+    from fatektool.jobs.loopback_result import LoopbackResult
+    from fatektool.protocol.status import BriefStatus
+
+FIRST_LOOK: Final = LoopbackPlan(count=6, max_error_rate=1.0)
+SHORT_TEST: Final = LoopbackPlan(count=120, duration_s=10.0)
+BAUDS: Final = (9600, 19200, 38400, 57600, 115200, 4800)
+FORMATS: Final = ("7E1", "8N1", "8E1")
+FACTORY_STATION: Final = 1
+
+
+@dataclass(slots=True)
+class Examination:
+    """What was found.
+
+    Attributes:
+        loopback: the test's figures.
+        brief: the PLC's brief status; None if it gave none.
+        findings: what the rules say.
+        elsewhere: PLCs that answered at another speed, format or station.
+    """
+
+    loopback: LoopbackResult
+    brief: BriefStatus | None = None
+    findings: list[Finding] = field(default_factory=list)
+    elsewhere: list[Station] = field(default_factory=list)
+
+    @property
+    def healthy(self) -> bool:
+        """True if no finding is a fault."""
+        return not any(finding.fault for finding in self.findings)
+
+
+def examine(plc: Plc, on_step: Callable[[str, int, int], object] = lambda *_: None) -> Examination:
+    """Examine a PLC and its line.
+
+    Args:
+        plc: who.
+        on_step: is told what is being done, how much of it is done, and of how much.
+
+    Raises:
+        LineError: the line was lost.
+    """
+    link = plc.link
+    result = run_loopback(plc, FIRST_LOOK, _told(on_step, FIRST_LOOK))
+    if result.total.ok and result.ended == "count":
+        result = run_loopback(plc, SHORT_TEST, _told(on_step, SHORT_TEST))
+    if result.ended == "interrupted":
+        raise KeyboardInterrupt
+    if result.lost is not None:
+        raise TransportClosed(result.lost)
+    found = Examination(result, findings=diagnose(Case(result, link.line, link.station, link.codec)))
+    if result.total.ok:
+        try:
+            found.brief = plc.brief_status()
+        except (LineError, PlcError) as error:
+            found.findings.append(
+                Finding(
+                    "no-status",
+                    fault=True,
+                    finding="the PLC gives no status",
+                    evidence=error.message,
+                    advice=error.hint or "run again",
+                )
+            )
+        else:
+            found.findings += _of_flags(found.brief)
+    elif link.transport.line is not None:
+        found.elsewhere = _look_elsewhere(plc, on_step)
+        found.findings += [_answers_elsewhere(station) for station in found.elsewhere]
+    return found
+
+
+def _told(
+    on_step: Callable[[str, int, int], object], plan: LoopbackPlan
+) -> Callable[[LoopbackResult], object]:
+    return lambda result: on_step("loopback", result.total.sent, plan.count or 0)
+
+
+def _look_elsewhere(plc: Plc, on_step: Callable[[str, int, int], object]) -> list[Station]:
+    """Try the usual settings; the line is left as it was."""
+    link = plc.link
+    settings = [Setting(link.codec, LineSettings(baud, form)) for baud in BAUDS for form in FORMATS]
+    try:
+        result = scan(
+            link.transport,
+            settings,
+            sorted({FACTORY_STATION, link.station}),
+            timeout_s=link.timeout_s,
+            retries=0,
+            most=1,
+            on_probe=lambda done, total: on_step("other settings", done, total),
+        )
+    finally:
+        link.transport.set_line(link.line)
+    if result.interrupted:
+        raise KeyboardInterrupt
+    return result.found
+
+
+def _answers_elsewhere(found: Station) -> Finding:
+    line = found.setting.line
+    return Finding(
+        "answers-elsewhere",
+        fault=True,
+        finding=f"station {found.station} answers at {line}",
+        evidence="one exchange of its brief status (40)",
+        advice=f"give --station {found.station} --baud {line.baud} --format {line.format}",
+    )
+
+
+_FLAGS: Final = (
+    ("battery_low", "the battery is low", "change it with the PLC on, or program and data are lost"),
+    ("ladder_checksum_error", "the program is damaged", "'fatektool restore' a good backup; take one first"),
+    (
+        "watchdog_timeout",
+        "the watchdog has stopped the PLC",
+        "a program's scan took too long: look for loops",
+    ),
+    ("emergency_stop", "the emergency stop is active", "make the machine safe, then release it"),
+)
+
+
+def _of_flags(brief: BriefStatus) -> list[Finding]:
+    """What the PLC itself complains of."""
+    return [
+        Finding(
+            name.replace("_", "-"),
+            fault=True,
+            finding=words,
+            evidence=f"flag {name} of its status (40)",
+            advice=advice,
+        )
+        for name, words, advice in _FLAGS
+        if getattr(brief.flags, name)
+    ]

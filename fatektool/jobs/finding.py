@@ -1,0 +1,45 @@
+"""What an examination finds, and what it is found by."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from fatektool.jobs.loopback_result import LoopbackResult
+    from fatektool.protocol.codec import Codec
+    from fatektool.transport.base import LineSettings
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """What a rule found.
+
+    Attributes:
+        rule: its name, for scripts.
+        fault: False for what is worth knowing and no fault.
+        finding: what it is.
+        evidence: the figures that say so.
+        advice: what to do.
+    """
+
+    rule: str
+    fault: bool
+    finding: str
+    evidence: str
+    advice: str
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """What the rules look at: a test's figures, and the line it was run on."""
+
+    result: LoopbackResult
+    line: LineSettings
+    station: int
+    codec: Codec
+
+    @property
+    def silent(self) -> bool:
+        """True if no answer was good."""
+        return self.result.total.ok == 0 and self.result.total.sent > 0

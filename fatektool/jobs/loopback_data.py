@@ -1,0 +1,60 @@
+"""What a loopback test sends: patterns that are hard on a line, made of characters that it can carry.
+
+::
+
+    ramp        every character in turn, begun one further on each time: no character goes untested
+    random      seeded
+    alternate   0101… and 1010… by turns: the most edges a byte can have
+    ones        all ones: the longest the line rests, where a receiver loses the clock
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+from random import Random
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+
+class Pattern(Enum):
+    """The name that ``--pattern`` takes."""
+
+    RAMP = "ramp"
+    RANDOM = "random"
+    ALTERNATE = "alternate"
+    ONES = "ones"
+
+
+def payloads(
+    sizes: Sequence[int], patterns: Sequence[Pattern], characters: bytes, seed: int
+) -> Iterator[bytes]:
+    """Without end: all sizes with the first pattern, all with the next, and round again.
+
+    Args:
+        sizes: 0 to 256 characters each.
+        patterns: which, in this order.
+        characters: what may be sent, in rising order.
+        seed: of the random pattern.
+    """
+    random = Random(seed)  # noqa: S311  # a test pattern, the same for the same seed
+    start = 0
+    while True:
+        for pattern in patterns:
+            for size in sizes:
+                yield _payload(pattern, size, characters, start, random)
+                start += 1
+
+
+def _payload(pattern: Pattern, size: int, characters: bytes, start: int, random: Random) -> bytes:
+    if pattern is Pattern.RANDOM:
+        return bytes(random.choices(characters, k=size))
+    if pattern is Pattern.RAMP:
+        begin = start % len(characters)
+        return (characters * (size // len(characters) + 2))[begin : begin + size]
+    mask = 0xFF if characters[-1] > 0x7F else 0x7F
+    if pattern is Pattern.ONES:
+        return bytes([mask]) * size
+    pair = bytes([0x55, 0xAA & mask]) if start % 2 else bytes([0xAA & mask, 0x55])
+    return (pair * (size // 2 + 1))[:size]

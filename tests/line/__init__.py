@@ -1,0 +1,1 @@
+"""Loopback test, diagnosis, scan and doctor."""

@@ -1,0 +1,107 @@
+"""The doctor: faults of the line and the PLC's own complaints, and where else a PLC answers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from fatektool.client import Plc
+from fatektool.errors import TransportClosed
+from fatektool.jobs.doctor import Examination, examine
+from fatektool.link import Link
+from fatektool.protocol.facon import FACON
+from fatektool.transport.base import LineSettings
+from tests.line.test_scan import Adjustable, Line
+from tests.plcs import simulated
+
+
+def rules(found: Examination) -> set[str]:
+    return {finding.rule for finding in found.findings}
+
+
+def test_a_healthy_plc() -> None:
+    found = examine(simulated(baud=9600).plc)
+    assert found.healthy
+    assert found.findings == []
+    assert found.brief is not None
+    assert found.loopback.total.ok > 50
+
+
+@pytest.mark.parametrize(
+    ("options", "rule", "healthy"),
+    [
+        ({"faults": ["drop=1"]}, "silence", False),
+        ({"faults": ["wrong-line=1"]}, "wrong-line", False),
+        ({"faults": ["echo=1"]}, "echo", True),
+        ({"faults": ["echo=1", "drop=1"]}, "echo-only", False),
+        ({"faults": ["bit-errors=0.003"]}, "errors-grow-with-size", False),
+        ({"faults": ["slow=0.3"]}, "slow-plc", False),
+        ({"scan_ms": 200}, "slow-plc", True),
+        ({"latency_timer_ms": 16}, "usb-latency", True),
+        ({"faults": ["twins=0.4"]}, "two-on-one-station", False),
+    ],
+)
+def test_faults_of_the_line(options: dict[str, Any], rule: str, healthy: bool) -> None:
+    found = examine(simulated(baud=9600, **options).plc)
+    assert rule in rules(found)
+    assert found.healthy == healthy
+
+
+@pytest.mark.parametrize(
+    ("flag", "rule"),
+    [
+        ("battery_low", "battery-low"),
+        ("ladder_checksum_error", "ladder-checksum-error"),
+        ("watchdog", "watchdog-timeout"),
+        ("emergency_stop", "emergency-stop"),
+    ],
+)
+def test_what_the_plc_complains_of(flag: str, rule: str) -> None:
+    bench = simulated(baud=9600)
+    setattr(bench.device, flag, True)
+    found = examine(bench.plc)
+    assert rules(found) == {rule}
+    assert not found.healthy
+
+
+def doctored(line: Line, station: int) -> Plc:
+    transport = Adjustable(line)
+    transport.line = "9600 7E1"
+    line.set_to = 9600
+    return Plc(Link(transport, FACON, station, LineSettings()), "line")
+
+
+class StatusOnly(Line):
+    """Answers nothing but 40, which is all that another setting is asked."""
+
+    def receive(self, data: bytes, now: float) -> list[tuple[float, bytes]]:
+        return super().receive(data, now) if data[3:5] == b"40" else []
+
+
+def test_a_plc_at_another_speed_is_found() -> None:
+    line = StatusOnly({3}, baud=38400)
+    plc = doctored(line, 3)
+    steps: list[str] = []
+    found = examine(plc, lambda step, _done, _total: steps.append(step))
+    assert rules(found) == {"silence", "answers-elsewhere"}
+    advice = found.findings[-1].advice
+    assert advice == "give --station 3 --baud 38400 --format 7E1"
+    assert set(steps) == {"loopback", "other settings"}
+    assert line.set_to == 9600
+
+
+def test_a_plc_at_the_factory_station_is_found() -> None:
+    found = examine(doctored(StatusOnly({1}), 3))
+    assert "give --station 1 --baud 9600" in found.findings[-1].advice
+
+
+def test_nobody_anywhere() -> None:
+    assert rules(examine(doctored(StatusOnly(set()), 3))) == {"silence"}
+
+
+def test_a_line_that_is_gone_is_an_error() -> None:
+    plc = simulated().plc
+    plc.link.transport.close()
+    with pytest.raises(TransportClosed):
+        examine(plc)
