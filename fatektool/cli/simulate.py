@@ -130,8 +130,6 @@ def simulate_command(
     """
     if not (tcp or udp or pty):
         raise UsageError("no door named", hint="give --tcp HOST:PORT, --udp HOST:PORT or --pty LINK")
-    if strict_baud and (baud is None or not pty):
-        raise UsageError("--strict-baud is for a --pty with a --baud")
     doors = [("tcp", door) for door in tcp] + [("udp", door) for door in udp]
     if replay is not None:
         from fatektool.cli.replay import open_replay, tell_unknown
@@ -143,6 +141,8 @@ def simulate_command(
         finally:
             tell_unknown(recorded, voice)
         return
+    if strict_baud and (baud is None or not pty):
+        raise UsageError("--strict-baud is for a --pty with a --baud")
     if replay_speed is not None:
         raise UsageError("--replay-speed is for a recorded PLC", hint="name the recording with --replay")
     wanted: dict[str, Any] = {}

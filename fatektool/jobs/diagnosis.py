@@ -165,7 +165,7 @@ def _damage(case: Case) -> Finding | None:
     return Finding(
         "damaged-frames",
         fault=True,
-        finding="answers come damaged, short ones as often as long ones",
+        finding="answers come damaged, and not clearly the longer ones more often",
         evidence=f"{count} of {total.sent}, {case.result.heard.noise_bytes} bytes that were no frame",
         advice="a loose contact, two masters on the line, or a converter that switches its direction "
         "too early",

@@ -9,7 +9,7 @@ An element is a kind and an address. The kinds fall into three widths (FACON pap
              DRT DRC DR DD DF               two registers, low word first, next one 2 on
 
 Addresses are decimal. The ranges are the largest of any model: a PLC answers error A past its own.
-F and DF are named by the M-series paper only (section 2.4), and FACON cannot write them.
+F and DF are named by the M-series paper only (section 2.4); FACON writes them as it does R and DR.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Kind:
         stride: how far apart the addresses of consecutive elements are.
         step: an address is a multiple of this.
         last: the largest address of any model.
-        digits: how many digits FACON writes an address with; 0 if its paper has no such element.
+        digits: how many digits FACON writes an address with.
     """
 
     symbol: str
@@ -58,7 +58,7 @@ def _kinds() -> dict[str, Kind]:
         ("RC", 9999, 4),
         ("R", 65535, 5),
         ("D", 65535, 5),
-        ("F", 65535, 0),
+        ("F", 65535, 5),
     ):
         kinds[symbol] = Kind(symbol, 16, 1, 1, last, digits)
         kinds[f"D{symbol}"] = Kind(f"D{symbol}", 32, 2, 1, last - 1, digits)

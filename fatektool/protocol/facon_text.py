@@ -28,17 +28,7 @@ _LETTERS: Final = b"ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
 
 def element_text(element: Element) -> bytes:
-    """An element as FACON writes it: ``R00012``, ``X0016``, ``DWM0000``.
-
-    Raises:
-        UsageError: FACON has no such element.
-    """
-    if not element.kind.digits:
-        raise UsageError(
-            f"{element}: facon has no {element.symbol}, expected another kind of element",
-            hint="file registers are the M-series': --protocol mseries",
-            element=str(element),
-        )
+    """An element as FACON writes it: ``R00012``, ``X0016``, ``DWM0000``."""
     return b"%b%0*d" % (element.symbol.encode(), element.kind.digits, element.address)
 
 
@@ -52,7 +42,7 @@ def take_element(data: bytes, at: int) -> tuple[Element, int]:
     while place < len(data) and data[place] in _LETTERS:
         place += 1
     kind = KINDS.get(data[at:place].decode("ascii"))
-    if kind is None or not kind.digits:
+    if kind is None:
         raise FrameError(f"no element at character {at} of the data", raw=data)
     digits = data[place : place + kind.digits]
     if len(digits) != kind.digits or not digits.isdigit():

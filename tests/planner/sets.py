@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from random import Random
 
-FACON_KINDS = [kind.symbol for kind in KINDS.values() if kind.digits]
 FAMILIES: list[list[str]] = [
     ["R"],
     ["R", "R", "DR"],
@@ -24,7 +23,7 @@ FAMILIES: list[list[str]] = [
     ["R", "D", "DR", "X", "WY", "Y"],
     ["RT", "DRT", "T", "WT"],
     ["RC", "DRC", "R"],
-    FACON_KINDS,
+    list(KINDS),
 ]
 """Kinds that are asked for together; one given twice is asked for more often."""
 SPANS = (12, 30, 60, 150, 400)

@@ -26,14 +26,14 @@ from fatektool.protocol.mseries import MSERIES
 from tests.plcs import simulated
 
 from .exhaustive import wire_bytes
-from .sets import FACON_KINDS, named
+from .sets import named
 
 if TYPE_CHECKING:
     from fatektool.protocol.codec import Codec
 
 
 @pytest.mark.parametrize(
-    ("codec", "symbol"), [(FACON, symbol) for symbol in FACON_KINDS] + [(MSERIES, symbol) for symbol in KINDS]
+    ("codec", "symbol"), [(codec, symbol) for codec in (FACON, MSERIES) for symbol in KINDS]
 )
 @pytest.mark.parametrize("count", [1, 2, 7, 32])
 def test_runs_and_items(symbol: str, count: int, codec: Codec) -> None:

@@ -18,7 +18,7 @@ from tests.plcs import Simulated, simulated
 
 from .exhaustive import places_of, wire_bytes
 from .plain import merged, one_each
-from .sets import FACON_KINDS, TURNAROUNDS, element_sets, named, scattered, side_by_side
+from .sets import TURNAROUNDS, element_sets, named, scattered, side_by_side
 
 AREAS = {
     "X": 256,
@@ -153,7 +153,7 @@ def test_nothing() -> None:
     assert plan_reads([], FACON, turnaround=100, limits={"M": 8}) == []
 
 
-@pytest.mark.parametrize("symbol", FACON_KINDS)
+@pytest.mark.parametrize("symbol", KINDS)
 def test_one_element_is_one_request(symbol: str) -> None:
     kind = KINDS[symbol]
     for address in (0, kind.last):

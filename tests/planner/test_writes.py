@@ -19,7 +19,7 @@ from fatektool.protocol.facon import FACON, parse_frame
 from tests.plcs import simulated
 
 from .exhaustive import places_of
-from .sets import FACON_KINDS, TURNAROUNDS, apart, element_sets, named, scattered
+from .sets import TURNAROUNDS, apart, element_sets, named, scattered
 
 if TYPE_CHECKING:
     from fatektool.simulator.memory import Memory
@@ -126,7 +126,7 @@ def test_nothing() -> None:
     assert plan_writes([], FACON) == []
 
 
-@pytest.mark.parametrize("symbol", FACON_KINDS)
+@pytest.mark.parametrize("symbol", KINDS)
 def test_one_element_is_one_request(symbol: str) -> None:
     kind = KINDS[symbol]
     for address in (0, kind.last):

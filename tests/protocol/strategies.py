@@ -42,15 +42,13 @@ if TYPE_CHECKING:
 
     from fatektool.protocol.codec import Codec
 
-FACON_KINDS = tuple(kind.symbol for kind in KINDS.values() if kind.digits)
-ALL_KINDS = tuple(KINDS)
 
 pages = st.integers(0, 0xFFFF)
 page_bytes = st.binary(min_size=PAGE_BYTES, max_size=PAGE_BYTES)
 stations = st.integers(0, 254)
 
 
-def elements(kinds: Iterable[str] = FACON_KINDS) -> st.SearchStrategy[Element]:
+def elements(kinds: Iterable[str] = tuple(KINDS)) -> st.SearchStrategy[Element]:
     def of(symbol: str) -> st.SearchStrategy[Element]:
         kind = KINDS[symbol]
         return st.integers(0, kind.last // kind.step).map(lambda n: Element(symbol, n * kind.step))
@@ -139,8 +137,8 @@ def _by_command(kinds: tuple[str, ...], alphabet: bytes) -> dict[Command, st.Sea
 
 _NOT_STX_OR_ETX = bytes(set(range(256)) - {2, 3})
 _BY_CODEC = {
-    FACON.name: _by_command(FACON_KINDS, _NOT_STX_OR_ETX),
-    MSERIES.name: _by_command(ALL_KINDS, bytes(range(256))),
+    FACON.name: _by_command(tuple(KINDS), _NOT_STX_OR_ETX),
+    MSERIES.name: _by_command(tuple(KINDS), bytes(range(256))),
 }
 BY_COMMAND = _BY_CODEC[FACON.name]
 

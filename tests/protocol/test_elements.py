@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fatektool.errors import FrameError, UsageError
+from fatektool.errors import UsageError
 from fatektool.protocol.elements import KINDS, Element
 from fatektool.protocol.facon_text import element_text, take_element
 
@@ -50,17 +50,6 @@ rows = pytest.mark.parametrize("row", TABLE, ids=[row[0] for row in TABLE])
 
 def test_the_table_is_whole() -> None:
     assert set(KINDS) == {row[0] for row in TABLE} | {"F", "DF"}
-
-
-@pytest.mark.parametrize("symbol", ["F", "DF"])
-def test_file_registers_are_the_m_series(symbol: str) -> None:
-    """FACON's paper has none: it refuses them by name."""
-    with pytest.raises(UsageError) as caught:
-        element_text(Element(symbol, 12))
-    assert caught.value.message == f"{symbol}12: facon has no {symbol}, expected another kind of element"
-    assert "--protocol mseries" in str(caught.value.hint)
-    with pytest.raises(FrameError, match="no element at character 0"):
-        take_element(f"{symbol}00012".encode(), 0)
 
 
 def test_file_registers() -> None:

@@ -88,8 +88,6 @@ def test_every_command_is_drawn() -> None:
         (0x46, b"01X0000", "takes registers"),
         (0x46, b"01WY0009", "multiple of 8"),
         (0x46, b"01R65536", "out of range"),
-        (0x46, b"01F00000", "no element at character 2"),
-        (0x46, b"01DF00000", "no element at character 2"),
         (0x47, b"02R0000010A5", "expected 2 values, got 1"),
         (0x47, b"01R0000010a5", "expected capital hex digits"),
         (0x47, b"01R00000+0A5", "expected capital hex digits"),

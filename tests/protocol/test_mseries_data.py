@@ -30,7 +30,7 @@ from fatektool.protocol.status import BriefStatus, DetailedStatus, RawStatus, St
 
 from .decoding import query, response
 from .mseries_vectors import EXAMPLES, PAYLOADS
-from .strategies import ALL_KINDS, elements
+from .strategies import elements
 from .vectors import FBE_28MC, FBE_28MC_BYTES
 
 # --- elements -------------------------------------------------------------------------------------
@@ -60,7 +60,7 @@ def test_symbols(symbol: str) -> None:
         assert element_size(one) == len(raw)
 
 
-@given(elements(ALL_KINDS))
+@given(elements(KINDS))
 def test_an_element_is_read_as_it_was_sent_or_not_sent(element: Element) -> None:
     try:
         raw = element_bytes(element)

@@ -157,12 +157,12 @@ def test_what_the_plc_refuses_is_named_and_the_rest_is_written(plant: Plant, pla
     larger.plc.write_discretes(Element("Y", 3), [True])
     larger.device.set_input(0, 1)
     larger.device.set_input_register(3840, 7)
-    words = ["D3070-D3073", "R0", "Y3", "X0", "R3840", "R9000"]
+    words = ["D3070-D3073", "R0", "Y3", "X0", "R3840", "F0", "R9000"]
     (place / "large.json").write_text(as_json(snapshot_of(*words, plc=larger)))
     assert plant.cli("discrete", "disable", "Y3").code == 0
     document = plant.json("apply", "snapshot", "apply", "large.json", "--yes", code=4)
     reasons = {each["key"]: each["reason"] for each in document["not_taken"]}
-    assert set(reasons) == {"D3072", "D3073", "R3840", "Y3"}
+    assert set(reasons) == {"D3072", "D3073", "F0", "R3840", "Y3"}
     assert "illegal address" in reasons["D3072"]
     assert "disabled" in reasons["Y3"]
     assert "read-only" in reasons["R3840"]

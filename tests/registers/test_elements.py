@@ -55,7 +55,7 @@ def with_holes(holes: AbstractSet[int], code: RefusalCode = RefusalCode.ILLEGAL_
         ("X0-X255 X256 Y0", "X256"),
         ("M1990-M2003", "M2002 M2003"),
         ("WM1984 WM1992 DWM1968 M2001", "WM1992"),
-        ("D4000 D4001 D4002", "D4000 D4001 D4002"),
+        ("F0 F1 F2", "F0 F1 F2"),
         ("R9000", "R9000"),
         ("RT255 RT256 DRC254 DRC255 T255 T256 S999 S1000", "RT256 DRC255 T256 S1000"),
         ("R8000-R9999", "R8072-R9999"),

@@ -12,12 +12,11 @@ from fatektool.errors import LineError
 from fatektool.jobs.register_writes import write_elements
 from fatektool.jobs.registers import read_disabled, read_elements
 from fatektool.protocol.elements import KINDS, Element
-from tests.planner.sets import FACON_KINDS
 
 from .plant import small
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
 SIZES: Final = {
     "X": 256, "Y": 256, "M": 2002, "S": 1000, "T": 256, "C": 256,
@@ -85,7 +84,7 @@ class Model:
 
 
 @st.composite
-def elements(draw: st.DrawFn, symbols: Sequence[str] = FACON_KINDS) -> Element:
+def elements(draw: st.DrawFn, symbols: tuple[str, ...] = tuple(KINDS)) -> Element:
     """Near the beginning, the end, and the read-only registers, where they meet each other."""
     kind = KINDS[draw(st.sampled_from(symbols))]
     area = places(Element(kind.symbol, 0))[0][0]
