@@ -30,29 +30,32 @@ _ROLES = {"request": Role.REQUEST, "answer": Role.ANSWER}
     "decode", epilog="Examples: fatektool decode 02 30 31 34 30 43 37 03;  fatektool decode line.pcap"
 )
 @click.argument("frames", nargs=-1, required=True, metavar="HEX…|FILE")
-@click.option("--protocol", type=click.Choice(PROTOCOLS), default="facon", show_default=True)
+@click.option(
+    "--protocol",
+    type=click.Choice(PROTOCOLS),
+    help="Of the frames.  [default: what the trace tells, or facon]",
+)
 @click.option("--as", "role", type=click.Choice(list(_ROLES)), help="What the frames given as hex are.")
 @voice_options
 def decode_command(
     frames: tuple[str, ...],
     voice: Voice,
     *,
-    protocol: str,
+    protocol: str | None,
     role: str | None,
 ) -> None:
     """Explain frames: every field, and whether the checksum is right.
 
     They are given as HEX, or come from a trace FILE (.ndjson, .pcap).
     """
+    records, damage = _gathered(frames)
+    protocol = protocol or _protocol_of(records)
     explainer = EXPLAINERS[protocol]()
-    found: list[tuple[TraceRecord | None, Explanation]] = []
-    try:
-        for pair in _explained(explainer, frames, _ROLES.get(role or "", Role.EITHER)):
-            found.append(pair)  # noqa: PERF402  # so that what came before an error is kept
-    except DataError:
+    found = list(_explained(explainer, records, _ROLES.get(role or "", Role.EITHER)))
+    if damage is not None:
         if found and not voice.json:  # what stands before the damage is worth a look
             voice.show({}, _lines(found, binary=explainer.binary))
-        raise
+        raise damage
     if not any(explanation.command is not None for _, explanation in found):
         others = " or ".join(name for name in EXPLAINERS if name != protocol)
         raise DataError(
@@ -66,10 +69,26 @@ def decode_command(
     voice.show(document, _lines(found, binary=explainer.binary))
 
 
+def _protocol_of(records: Iterable[TraceRecord]) -> str:
+    """The protocol that a trace tells of; FACON if it tells none that is known."""
+    return next((record.protocol for record in records if record.protocol in EXPLAINERS), "facon")
+
+
+def _gathered(frames: tuple[str, ...]) -> tuple[list[TraceRecord], DataError | None]:
+    """The bytes to explain, up to the end or to damage."""
+    records: list[TraceRecord] = []
+    try:
+        for record in _records(frames):
+            records.append(record)  # noqa: PERF402  # so that what came before an error is kept
+    except DataError as error:
+        return records, error
+    return records, None
+
+
 def _explained(
-    explainer: Explainer, frames: tuple[str, ...], role: Role
+    explainer: Explainer, records: Iterable[TraceRecord], role: Role
 ) -> Iterator[tuple[TraceRecord | None, Explanation]]:
-    for record in _records(frames):
+    for record in records:
         typed = record.time == ""
         known = role if typed else _direction(record)
         for explanation in explainer.explain(record.data, known):

@@ -9,6 +9,7 @@ from click.core import ParameterSource
 from fatektool.errors import DataError, UsageError
 from fatektool.program.files import read_bounded
 from fatektool.simulator.replay import Recorded, Replay
+from fatektool.simulator.slaves import SLAVES
 from fatektool.transport.trace import SENT
 from fatektool.transport.trace_reader import read_trace
 
@@ -33,7 +34,7 @@ def open_replay(path: Path, protocol: str, speed: float, context: click.Context,
 
     Args:
         path: the trace file.
-        protocol: what was recorded.
+        protocol: what was recorded, if the trace does not tell, or the user does.
         speed: see ``Replay``.
         context: of the command, to see what options were given.
         voice: is told what was asked that the recording does not hold.
@@ -49,10 +50,10 @@ def open_replay(path: Path, protocol: str, speed: float, context: click.Context,
                 f"{parameter.opts[0]} and --replay: a recorded PLC is what it was when it was recorded",
                 hint="leave one of them out",
             )
-    records = [
-        Recorded(record.time_s, record.direction == SENT, record.data)
-        for record in read_trace(read_bounded(path, _MAX_TRACE), str(path))
-    ]
+    trace = list(read_trace(read_bounded(path, _MAX_TRACE), str(path)))
+    if context.get_parameter_source("protocol") is ParameterSource.DEFAULT:
+        protocol = next((record.protocol for record in trace if record.protocol in SLAVES), protocol)
+    records = [Recorded(record.time_s, record.direction == SENT, record.data) for record in trace]
     try:
         return Replay(
             records,

@@ -2,7 +2,7 @@ r"""A record of the wire: what went out and what came in, with the time of each.
 
 ``.ndjson``, one line a record::
 
-    {"time": "2026-11-22T03:15:00.123456Z", "direction": "tx", "hex": "0230313430433703"}
+    {"time": "2026-11-22T03:15:00.123456Z", "protocol": "facon", "direction": "tx", "hex": "0230313430433703"}
 
 ``.pcap``, for Wireshark: link type 147 (user 0), nanosecond time stamps; before the bytes of each record
 stands a pseudo-header of four bytes::
@@ -54,12 +54,18 @@ class TraceWriter(Protocol):
 class NdjsonTrace:
     """One JSON line a record."""
 
-    def __init__(self, file: BinaryIO) -> None:
+    def __init__(self, file: BinaryIO, protocol: str) -> None:
         self._file = file
+        self._protocol = protocol
 
     def record(self, time_ns: int, direction: str, data: bytes) -> None:
         """Write one record."""
-        entry = {"time": time_text(time_ns), "direction": direction, "hex": data.hex().upper()}
+        entry = {
+            "time": time_text(time_ns),
+            "protocol": self._protocol,
+            "direction": direction,
+            "hex": data.hex().upper(),
+        }
         self._file.write(json.dumps(entry).encode() + b"\n")
         self._file.flush()
 
@@ -103,7 +109,7 @@ def open_trace(path: Path, protocol: str) -> TraceWriter:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise UsageError(f"cannot write the trace {path}: {reason}") from error
-    return PcapTrace(file, protocol) if suffix == ".pcap" else NdjsonTrace(file)
+    return PcapTrace(file, protocol) if suffix == ".pcap" else NdjsonTrace(file, protocol)
 
 
 def time_text(time_ns: int) -> str:

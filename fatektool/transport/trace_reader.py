@@ -10,7 +10,7 @@ from datetime import datetime
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import DataError
-from fatektool.transport.trace import LINK_TYPE, PCAP_MAGIC, RECEIVED, SENT, time_text
+from fatektool.transport.trace import LINK_TYPE, PCAP_MAGIC, PROTOCOL_CODES, RECEIVED, SENT, time_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -20,6 +20,7 @@ _RECORD: Final = 16
 _PSEUDO_HEADER: Final = 4
 _DIRECTIONS: Final = {b"\x01\x00": SENT, b"\x01\x01": RECEIVED}
 """A pseudo-header's first two bytes, version and direction."""
+_PROTOCOLS: Final = {code: name for name, code in PROTOCOL_CODES.items()}
 _MAX_PACKET: Final = 1 << 20
 _TIME: Final = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?Z", re.ASCII)
 _HINT: Final = "expected a .ndjson or .pcap file that --trace wrote"
@@ -33,11 +34,13 @@ class TraceRecord:
         time: UTC, RFC 3339.
         direction: ``tx`` sent, ``rx`` received.
         data: the bytes.
+        protocol: the name of ``--protocol``; empty if the trace does not tell.
     """
 
     time: str
     direction: str
     data: bytes
+    protocol: str = ""
 
     @property
     def time_s(self) -> float:
@@ -66,8 +69,13 @@ def _read_ndjson(data: bytes, name: str) -> Iterator[TraceRecord]:
             continue
         try:
             entry = json.loads(line.decode())
-            record = TraceRecord(str(entry["time"]), str(entry["direction"]), bytes.fromhex(entry["hex"]))
-        except (ValueError, KeyError, TypeError, RecursionError) as error:
+            record = TraceRecord(
+                str(entry["time"]),
+                str(entry["direction"]),
+                bytes.fromhex(entry["hex"]),
+                str(entry.get("protocol", "")),
+            )
+        except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
             raise DataError(
                 f"{name}: line {number}: no trace record: {type(error).__name__}", hint=_HINT
             ) from error
@@ -101,6 +109,9 @@ def _read_pcap(data: bytes, name: str) -> Iterator[TraceRecord]:
         if not _PSEUDO_HEADER <= size <= _MAX_PACKET or len(packet) != size or direction is None:
             raise DataError(f"{name}: packet {number} is cut off or damaged")
         yield TraceRecord(
-            time_text(seconds * 1_000_000_000 + nanoseconds), direction, packet[_PSEUDO_HEADER:]
+            time_text(seconds * 1_000_000_000 + nanoseconds),
+            direction,
+            packet[_PSEUDO_HEADER:],
+            _PROTOCOLS.get(packet[2], ""),
         )
         at += _RECORD + size

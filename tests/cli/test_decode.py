@@ -76,3 +76,19 @@ def test_any_bytes_are_explained_or_refused(cli: Cli, data: bytes) -> None:
     done.document("error" if done.code else "decode")
     framed = b"\x02" + data.replace(b"\x03", b"") + b"\x03"
     assert cli("decode", framed.hex()).code in {0, 5}
+
+
+@pytest.mark.parametrize("name", ["x.pcap", "x.ndjson"])
+def test_a_trace_tells_its_protocol(cli: Cli, name: str) -> None:
+    assert cli("status", "-p", "sim:", "--protocol", "mseries", "--trace", name).code == 0
+    found = cli("decode", name, "--json").document("decode")
+    assert found["protocol"] == "mseries"
+    assert all(frame["checksum_ok"] for frame in found["frames"])
+    assert cli("decode", name, "--protocol", "facon").code == 5
+
+
+def test_a_trace_that_does_not_tell_is_facon(cli: Cli, place: Path) -> None:
+    line = '{"time": "2026-11-22T03:15:00Z", "direction": "tx", "hex": "0230313430433703"}\n'
+    for protocol in ("", '"protocol": "x", ', '"protocol": 7, '):
+        (place / "x.ndjson").write_text(line.replace('"direction"', protocol + '"direction"'))
+        assert cli("decode", "x.ndjson", "--json").document("decode")["protocol"] == "facon"

@@ -34,7 +34,7 @@ T0 = "2026-11-22T03:15:00.123456Z"
 ASKS, ANSWERS = b"\x020140C7\x03", b"\x020140029000022\x03"
 SCHEMA = json.loads((Path(fatektool.__file__).parent / "schemas/trace.json").read_text("utf-8"))
 WRITERS: dict[str, Callable[[BinaryIO], TraceWriter]] = {
-    ".ndjson": NdjsonTrace,
+    ".ndjson": lambda file: NdjsonTrace(file, "facon"),
     ".pcap": lambda file: PcapTrace(file, "facon"),
 }
 suffixes = pytest.mark.parametrize("suffix", WRITERS)
@@ -91,11 +91,11 @@ def test_a_conversation(tmp_path: Path, suffix: str) -> None:
         line.write(ASKS)
         assert line.read(5, 1.0) + line.read(100, 1.0) == ANSWERS
     assert list(read_trace(path.read_bytes(), path.name)) == [
-        TraceRecord(T0, "tx", ASKS),
-        TraceRecord("2026-11-22T03:15:01.123456Z", "rx", ANSWERS),  # the time of its first piece
-        TraceRecord("2026-11-22T03:15:02.123456Z", "tx", ASKS),
-        TraceRecord("2026-11-22T03:15:03.123456Z", "tx", ASKS),
-        TraceRecord("2026-11-22T03:15:04.123456Z", "rx", ANSWERS),
+        TraceRecord(T0, "tx", ASKS, "facon"),
+        TraceRecord("2026-11-22T03:15:01.123456Z", "rx", ANSWERS, "facon"),  # the time of its first piece
+        TraceRecord("2026-11-22T03:15:02.123456Z", "tx", ASKS, "facon"),
+        TraceRecord("2026-11-22T03:15:03.123456Z", "tx", ASKS, "facon"),
+        TraceRecord("2026-11-22T03:15:04.123456Z", "rx", ANSWERS, "facon"),
     ]
 
 
@@ -208,7 +208,8 @@ def test_a_line_of_ndjson(tmp_path: Path) -> None:
         line.read(100, 1.0)
     first, second = path.read_bytes().splitlines(keepends=True)
     assert first == (
-        b'{"time": "2026-11-22T03:15:00.123456Z", "direction": "tx", "hex": "0230313430433703"}\n'
+        b'{"time": "2026-11-22T03:15:00.123456Z", "protocol": "facon", "direction": "tx",'
+        b' "hex": "0230313430433703"}\n'
     )
     for text in (first, second):
         jsonschema.Draft202012Validator(SCHEMA).validate(json.loads(text))
@@ -234,7 +235,7 @@ def test_a_packet_of_pcap(tmp_path: Path) -> None:
 def test_pcap_of_a_big_endian_machine() -> None:
     data = struct.pack(">IHHiIII", 0xA1B23C4D, 2, 4, 0, 0, 65535, 147)
     data += struct.pack(">IIII", T0_NS // 10**9, 123456789, 12, 12) + b"\x01\x01\x01\x00" + ASKS
-    assert list(read_trace(data, "line.pcap")) == [TraceRecord(T0, "rx", ASKS)]
+    assert list(read_trace(data, "line.pcap")) == [TraceRecord(T0, "rx", ASKS, "facon")]
 
 
 @pytest.mark.parametrize(
