@@ -155,7 +155,8 @@ def test_a_trace_is_explained(line: Line, place: Path, cli: Cli) -> None:
         document = cli("decode", "--protocol", "mseries", place / name, "--json").document("decode")
         assert {frame["checksum_ok"] for frame in document["frames"]} == {True}
         assert [frame["role"] for frame in document["frames"]][:2] == ["request", "answer"]
-        refused = cli("decode", place / name)
+        assert cli("decode", place / name).out == shown.out  # the trace tells its protocol
+        refused = cli("decode", place / name, "--protocol", "facon")
         assert refused.code == 5
         assert "no facon frame in it" in refused.err
         assert "--protocol mseries" in refused.err
