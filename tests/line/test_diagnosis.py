@@ -41,7 +41,11 @@ RULES: list[tuple[dict[str, Any], set[str], str]] = [
 ]
 
 
-@pytest.mark.parametrize(("options", "rules", "evidence"), RULES, ids=lambda value: str(value)[:40])
+@pytest.mark.parametrize(
+    ("options", "rules", "evidence"),
+    RULES,
+    ids=lambda value: "+".join(sorted(value)) if isinstance(value, set) else str(value)[:40],
+)
 def test_a_rule_finds_what_it_is_for_and_no_other_does(
     options: dict[str, Any], rules: set[str], evidence: str
 ) -> None:
