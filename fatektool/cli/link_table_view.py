@@ -1,0 +1,141 @@
+"""A communication table and its check, as a document and as lines."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+from fatektool.protocol.link_checks import CLINK_COMMANDS, HIGH_SPEED_COMMANDS, MBUS_COMMANDS
+from fatektool.protocol.link_messages import MessageTable
+from fatektool.protocol.link_operands import (
+    CLINK_TYPES,
+    HIGH_SPEED_TYPES,
+    MBUS_MASTER_TYPES,
+    MBUS_SLAVE_TYPES,
+)
+from fatektool.protocol.link_results import meaning
+from fatektool.protocol.link_tables import HighSpeedTable, MbusTable, Table, kind_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from fatektool.protocol.link_results import Fault
+
+_ARROWS: Final = {1: "<-", 2: "->", 3: "->"}
+
+
+def table_document(
+    table: Table, faults: Sequence[Fault], start: str | None, file: str | None, place: dict[str, Any] | None
+) -> dict[str, Any]:
+    """``fatektool.link-table/1``.
+
+    Args:
+        table: the table.
+        faults: what is wrong with it.
+        start: operand SR; None for a table in a file.
+        file: the file; None for a table in a PLC.
+        place: when and where it was read; None for a table in a file.
+    """
+    message = None
+    if isinstance(table, MessageTable):
+        message = {
+            "mode": table.mode,
+            "mode_meaning": table.modes.get(table.mode),
+            "start_code": table.start_code,
+            "end_code": table.end_code,
+            "length": table.message_length,
+            "data": table.message.hex(" ").upper(),
+        }
+    return {
+        "schema": "fatektool.link-table/1",
+        **(place or {"time": None, "target": None, "station": None, "protocol": None}),
+        "sr": start,
+        "file": file,
+        "kind": kind_of(table).value,
+        "ok": not faults,
+        "faults": fault_documents(faults),
+        "transactions": None if message else _rows(table, faults),
+        "message": message,
+        "words": [f"{word:04X}" for word in table.to_words()],
+    }
+
+
+def fault_documents(faults: Iterable[Fault]) -> list[dict[str, Any]]:
+    """Faults as JSON has them."""
+    return [
+        {
+            "transaction": fault.row,
+            "code": None if fault.code is None else f"{fault.code:X}",
+            "meaning": None if fault.code is None else meaning(fault.code),
+            "reason": fault.reason,
+        }
+        for fault in faults
+    ]
+
+
+def _rows(table: Table, faults: Iterable[Fault]) -> list[dict[str, Any]]:
+    """Each transaction in words, with the result code that it would give."""
+    codes: dict[int, str | None] = {}
+    for fault in faults:
+        if fault.row is not None and codes.get(fault.row) is None:
+            codes[fault.row] = None if fault.code is None else f"{fault.code:X}"
+    rows = []
+    if isinstance(table, HighSpeedTable):
+        for number, block in enumerate(table.rows):
+            data = block.data.written(HIGH_SPEED_TYPES)
+            command = HIGH_SPEED_COMMANDS.get(block.command, str(block.command))
+            rows.append((number, block.station, command, block.length, data, data))
+    elif not isinstance(table, MessageTable):
+        mbus = isinstance(table, MbusTable)
+        masters, slaves = (MBUS_MASTER_TYPES, MBUS_SLAVE_TYPES) if mbus else (CLINK_TYPES, CLINK_TYPES)
+        commands = MBUS_COMMANDS if mbus else CLINK_COMMANDS
+        for number, row in enumerate(table.rows):
+            command = commands.get(row.command, str(row.command))
+            master, slave = row.master.written(masters), row.slave.written(slaves)
+            rows.append((number, row.station, command, row.length, master, slave))
+    names = ("transaction", "station", "command", "length", "master", "slave")
+    return [dict(zip(names, row, strict=True)) | {"code": codes.get(row[0], "0")} for row in rows]
+
+
+def table_lines(table: Table, faults: Sequence[Fault]) -> Iterator[str]:
+    """The table for people: rows, then what is wrong with them."""
+    if isinstance(table, MessageTable):
+        yield from _message_lines(table)
+    else:
+        yield from _row_lines(table, faults)
+    for fault in faults:
+        place = "table" if fault.row is None else f"transaction {fault.row}"
+        code = "" if fault.code is None else f" (result {fault.code:X}: {meaning(fault.code)})"
+        yield f"{place}: {fault.reason}{code}"
+    if not faults:
+        yield "all within the documented ranges"
+
+
+def _row_lines(table: Table, faults: Sequence[Fault]) -> Iterator[str]:
+    head = ("no.", "station", "command", "master", "", "slave", "length", "result")
+    shared = isinstance(table, HighSpeedTable)
+    if shared:
+        head = ("no.", "sender", "command", "data", "", "all others", "length", "result")
+    arrows = {name: _ARROWS[code] for code, name in MBUS_COMMANDS.items()}
+    cells: list[tuple[str, ...]] = [head]
+    for row in _rows(table, faults):
+        station = "all" if row["station"] == 0 and not shared else row["station"]
+        arrow = "->" if shared else arrows.get(row["command"], "?")
+        code = "?" if row["code"] is None else row["code"]
+        found = (row["transaction"], station, row["command"], row["master"], arrow, row["slave"])
+        cells.append(tuple(map(str, (*found, row["length"], code))))
+    widths = [max(len(line[column]) for line in cells) for column in range(len(head))]
+    for line in cells:
+        yield "  ".join(f"{cell:<{width}}" for cell, width in zip(line, widths, strict=True)).rstrip()
+
+
+def _message_lines(table: MessageTable) -> Iterator[str]:
+    data = table.message
+    text = "".join(chr(byte) if 0x20 <= byte < 0x7F else "." for byte in data)
+    codes = (("start code", table.start_code), ("end code", table.end_code))
+    yield f"mode        {table.mode:02X}H, {table.modes.get(table.mode, 'no such mode')}"
+    for name, code in codes:
+        yield f"{name:<10}  {f'{code:02X}H' if code else 'none'}"
+    yield f"length      {table.message_length}"
+    if data:
+        yield f"data        {data.hex(' ').upper()}"
+        yield f"text        {text}"

@@ -1,0 +1,196 @@
+"""``link table write``: a communication table into the PLC, with a way back."""
+
+from __future__ import annotations
+
+import os
+import shlex
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fatektool.cli.documents import where
+from fatektool.cli.link_table_view import fault_documents, table_lines
+from fatektool.cli.options import PATH, Connection, connection_options, yes_option
+from fatektool.cli.output import Voice, can_ask
+from fatektool.cli.read import warn_of
+from fatektool.cli.way_back import same_again, save_safety
+from fatektool.errors import DataError, PlcError, RestoreIncomplete, UsageError
+from fatektool.jobs.link_table import WritePlan, parse_start, plan_write, write_plan
+from fatektool.jobs.link_toml import MAX_TOML, load_table
+from fatektool.program.files import read_bounded, require_folder
+from fatektool.protocol.link_tables import kind_of, place_faults
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
+
+    from fatektool.client import Plc
+    from fatektool.jobs.register_writes import NotTaken
+    from fatektool.protocol.elements import Element
+    from fatektool.protocol.link_results import Fault
+    from fatektool.protocol.link_tables import Table
+
+
+@click.command(
+    "write", epilog="Example: fatektool link table write press.toml R5000 -p /dev/ttyUSB0 --dry-run"
+)
+@click.argument("file", type=PATH)
+@click.argument("sr", metavar="SR")
+@click.option("--dry-run", is_flag=True, help="Show what would be written, and write nothing.")
+@click.option("--force", is_flag=True, help="Write a table that has faults.")
+@click.option(
+    "--safety-dir", type=PATH, metavar="DIR", help="Where the words before are saved; by default beside FILE."
+)
+@click.option("--no-safety-snapshot", is_flag=True, help="Do not save the words before: no way back.")
+@yes_option
+@connection_options
+def write_command(
+    file: Path,
+    sr: str,
+    connection: Connection,
+    voice: Voice,
+    *,
+    dry_run: bool,
+    force: bool,
+    safety_dir: Path | None,
+    no_safety_snapshot: bool,
+    yes: bool,
+) -> int:
+    """Put the table in FILE into the PLC, from SR on.
+
+    Only what differs is written; the words before are saved as a safety snapshot first, which 'fatektool
+    snapshot apply' puts back, and all is read back. What the PLC does not take is named (exit 4): registers
+    that are configured as ROR take nothing. If the line fails on the way (exit 6), the same command finishes
+    it.
+    """
+    if no_safety_snapshot and safety_dir is not None:
+        raise UsageError("--no-safety-snapshot does not go with --safety-dir")
+    start = parse_start(sr, "SR")
+    table = load_table(read_bounded(file, MAX_TOML), str(file))
+    folder = None if no_safety_snapshot else require_folder(safety_dir or file.parent)
+    words = table.to_words()
+    faults = [*place_faults(start, len(words)), *table.faults()]
+    _require_good(file, faults, force=force)
+    safety: str | None = None
+    failed: list[NotTaken] = []
+    with connection.open(voice, writes=not dry_run) as plc:
+        plan = plan_write(plc, start, words)
+        if plan.changes and not dry_run:
+            if not yes and not can_ask():
+                raise UsageError(
+                    "this needs a confirmation, and there is no terminal to ask on: nothing was written",
+                    hint="add --yes",
+                )
+            safety = None if folder is None else str(save_safety(plan.present, _file_stem(file), folder))
+            _tell(plan, table, faults, safety, voice)
+            if not voice.confirm(f"Write {len(plan.changes)} registers of the PLC?", yes=yes):
+                raise UsageError("not agreed to: nothing was written")
+            try:
+                failed = write_plan(plc, plan, safety)
+            except RestoreIncomplete as error:
+                command = same_again(connection, "write")
+                error.details["command"] = command
+                lie = f"the words before lie in {safety}" if safety else "the words before are not saved"
+                error.hint = f"{lie}; mend the cause, then: {command}"
+                raise
+        document = _document(
+            plc,
+            file,
+            start,
+            table=table,
+            faults=faults,
+            plan=plan,
+            failed=failed,
+            safety=safety,
+            dry_run=dry_run,
+        )
+    voice.show(document, _result_lines(plan, failed, dry_run=dry_run))
+    warn_of({str(each.element): _did_not(each) for each in failed}, voice)
+    return PlcError.exit_code if failed else 0
+
+
+def _require_good(file: Path, faults: Sequence[Fault], *, force: bool) -> None:
+    if not faults or force:
+        return
+    first = faults[0]
+    place = "" if first.row is None else f"transaction {first.row}: "
+    more = f" and {len(faults) - 1} more" if len(faults) > 1 else ""
+    raise DataError(
+        f"{file}: the table has faults: {place}{first.reason}{more}: nothing was written",
+        hint=f"'fatektool link table check {shlex.quote(str(file))}' shows all; --force writes it as it is",
+        file=str(file),
+        faults=fault_documents(faults),
+    )
+
+
+def _tell(plan: WritePlan, table: Table, faults: Sequence[Fault], safety: str | None, voice: Voice) -> None:
+    for line in table_lines(table, faults):
+        voice.say(line)
+    if plan.present.running:
+        voice.warn("the PLC is in RUN: an instruction may use the table while it is half old and half new")
+    voice.say(f"The words before are saved in {safety}" if safety else "The words before are NOT saved.")
+
+
+def _file_stem(file: Path) -> str:
+    """What the safety snapshot's name begins with: 255 bytes is all that a name may have."""
+    return os.fsencode(file.stem)[:150].decode(errors="ignore")
+
+
+def _did_not(each: NotTaken) -> str:
+    got = "cannot be read" if each.got is None else f"holds {each.got:04X}"
+    return f"did not take: expected {each.wanted:04X}, it {got}: {each.reason}"
+
+
+def _result_lines(plan: WritePlan, failed: list[NotTaken], *, dry_run: bool) -> Iterator[str]:
+    count = len(plan.changes)
+    if not count:
+        yield "same: nothing was written"
+    elif dry_run:
+        for change in plan.changes:
+            yield f"{change.element}  {change.before:04X} -> {change.after:04X}"
+        yield "dry run: nothing was written"
+    else:
+        yield f"{count - len(failed)} of {count} registers written and read back, {plan.same} were the same"
+
+
+def _document(
+    plc: Plc,
+    file: Path,
+    start: Element,
+    *,
+    table: Table,
+    faults: Sequence[Fault],
+    plan: WritePlan,
+    failed: list[NotTaken],
+    safety: str | None,
+    dry_run: bool,
+) -> dict[str, Any]:
+    return {
+        "schema": "fatektool.link-write/1",
+        **where(plc),
+        "file": str(file),
+        "sr": str(start),
+        "kind": kind_of(table).value,
+        "dry_run": dry_run,
+        "faults": fault_documents(faults),
+        "changes": [
+            {
+                "element": str(change.element),
+                "from": f"{change.before:04X}",
+                "to": f"{change.after:04X}",
+            }
+            for change in plan.changes
+        ],
+        "same": plan.same,
+        "written": 0 if dry_run else len(plan.changes) - len(failed),
+        "not_taken": [
+            {
+                "element": str(each.element),
+                "wanted": f"{each.wanted:04X}",
+                "got": None if each.got is None else f"{each.got:04X}",
+                "reason": each.reason,
+            }
+            for each in failed
+        ],
+        "safety_snapshot": safety,
+    }

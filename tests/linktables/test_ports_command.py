@@ -1,0 +1,94 @@
+"""``link ports`` and ``link result`` at the command line, over a simulated PLC with its memory in a file."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tests.registers.plant import error_of
+
+from .samples import put
+
+if TYPE_CHECKING:
+    from tests.cli.house import Cli
+    from tests.registers.plant import Plant
+
+
+def test_ports(fbs: Plant) -> None:
+    fbs.write(
+        "M1960=on", "R4147=0x0332", "R4047=0x5502", "D4043=0x560A", "D4044=0x5602", "D4045:2=0x0A01,0x0244",
+        "R4149=0x5500", "R4140:6=0x8220,0x1280,0x0E29,0,0,0", "R4054=0x5507", "R4059=0x0803", "R4148=0x0C00",
+    )  # fmt: skip
+    document = fbs.json("link-ports", "link", "ports")
+    port = document["ports"][0]
+    assert (port["free"], port["protocol"], port["continuous"]) == (True, "Modbus RTU", True)
+    assert (port["tx_delay_s"], port["rx_timeout_s"], port["rx_timeout_unit_s"]) == (0.03, 5, 0.1)
+    assert (port["last_result"]["code"], port["last_result"]["station"]) == ("A", 2)
+    assert document["modem"]["phone_number"] == "0228082192"
+    assert document["high_speed_link"]["abnormal"] == "CRC error"
+    assert document["registers"]["R4147"] == "0332"
+    assert document["errors"] == {}
+    done = fbs.cli("link", "ports")
+    assert (done.code, done.err) == (0, "")
+    for line in (
+        "  state            free",
+        "  as a slave       Modbus RTU",
+        "  RX time-out      5 s (in units of 0.1 s)",
+        "  last result      A, no answer from the station within the time-out (transaction 1, station 2)",
+        "  last result      kept for continuous execution alone; else see 'fatektool link result'",
+        "  R4148             12 ms",
+        "  master station    7",
+        "  abnormal answers  3, CRC error",
+        "  phone number   0228082192",
+    ):
+        assert line in done.out.splitlines(), line
+
+
+def test_ports_of_a_plc_that_lacks_some(fb: Plant) -> None:
+    document = fb.json("link-ports", "link", "ports")
+    assert set(document["errors"]) == {f"D{at}" for at in range(4043, 4053)}
+    assert document["ports"][0]["rx_timeout_unit_s"] == 0.01
+    assert (document["ports"][0]["minimum_scans"], document["ports"][0]["last_result"]) == (None, None)
+    done = fb.cli("link", "ports")
+    assert done.code == 0
+    assert "  last result      -" in done.out.splitlines()
+    assert "warning: D4043: the PLC refused" in fb.cli("link", "ports", "-v").err
+
+
+def test_result(fbs: Plant) -> None:
+    put(fbs, "D100", (0x0A03, 0x0246, 0, 0, 0x6011, 0, 0, 0))
+    document = fbs.json("link-result", "link", "result", "D100")
+    assert document["result"]["transaction"] == 3
+    assert [document[name] for name in ("waiting", "repeated", "active", "error", "done")] == [
+        True, True, False, True, True,
+    ]  # fmt: skip
+    done = fbs.cli("link", "result", "D100")
+    assert done.out.splitlines()[0] == "result       A, no answer from the station within the time-out"
+    assert "do           check that the station is on" in done.out
+    assert "command      46H, read registers" in done.out.splitlines()
+    assert "outputs      ERR DN" in done.out.splitlines()
+    assert fbs.cli("link", "result", "D100", "--check").code == 1
+    assert fbs.cli("link", "result", "D200", "--check").code == 0
+
+
+def test_result_of_a_message(fbs: Plant) -> None:
+    put(fbs, "R100", (0, 9, 9, 9, 0x4000, 9, 9, 9, 4, 0x02, 0x4F, 0x4B, 0x03))
+    document = fbs.json("link-result", "link", "result", "R100", "--kind", "md1")
+    assert document["received"] == {"length": 4, "data": "02 4F 4B 03"}
+    assert document["result"]["transaction"] is None
+    lines = fbs.cli("link", "result", "R100", "--kind", "md2").out.splitlines()
+    assert "text      .OK." in lines
+    assert not any(line.startswith("transaction") for line in lines)
+
+
+def test_result_of_no_register(fb: Plant) -> None:
+    assert "WR M0: expected a register R or D" in error_of(fb.cli("link", "result", "M0"), 2)
+    assert "the PLC refused D3072" in error_of(fb.cli("link", "result", "D3070"), 4)
+    assert error_of(fb.cli("link", "result", "D0", "-s", "9", "--timeout", "0.01", "--retries", "0"), 3)
+
+
+def test_the_group_lists_what_there_is(cli: Cli) -> None:
+    done = cli("link", "--help")
+    assert done.code == 0
+    for name in ("ports", "table", "result"):
+        assert f"\n  {name} " in done.out
+    assert cli("link", "nothing").code == 2
