@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from fatektool.jobs.doctor import Examination
     from fatektool.jobs.finding import Finding
     from fatektool.jobs.loopback_result import LoopbackResult, Tally
+    from fatektool.jobs.raw_frame import RawFrame
     from fatektool.jobs.scan import ScanResult, Setting, Station, Unclear
 
 
@@ -21,8 +22,9 @@ def loopback_document(plc: Plc, result: LoopbackResult, findings: Iterable[Findi
     plan, total = result.plan, result.total
     return {
         "schema": "fatektool.loopback/1",
-        **where(plc),
+        **(where(plc) if plan.raw is None else where(plc) | {"station": None, "protocol": "raw"}),
         "line": plc.link.transport.line,
+        "raw": None if plan.raw is None else _frame(plan.raw),
         "verdict": "fail" if result.faults else "pass",
         "ended": result.ended,
         "sent": total.sent,
@@ -51,6 +53,11 @@ def loopback_document(plc: Plc, result: LoopbackResult, findings: Iterable[Findi
         "seed": plan.seed,
         "diagnosis": [finding_document(finding) for finding in findings],
     }
+
+
+def _frame(raw: RawFrame) -> dict[str, str | None]:
+    codes = {"start": raw.start, "end": raw.end}
+    return {name: None if code is None else f"{code:02X}" for name, code in codes.items()}
 
 
 def _tally(tally: Tally) -> dict[str, Any]:

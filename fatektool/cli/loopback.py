@@ -15,7 +15,8 @@ from fatektool.jobs.diagnosis import diagnose
 from fatektool.jobs.finding import Case
 from fatektool.jobs.loopback import run_loopback
 from fatektool.jobs.loopback_data import Pattern
-from fatektool.jobs.loopback_result import DEFAULT_COUNT, DEFAULT_SIZES, LoopbackPlan
+from fatektool.jobs.loopback_result import DEFAULT_COUNT, DEFAULT_SIZES, LoopbackPlan, usual_sizes
+from fatektool.jobs.raw_frame import MAX_FRAME, RawFrame
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -31,10 +32,9 @@ if TYPE_CHECKING:
 @click.option("--duration", type=Seconds(0, min_open=True), metavar="S", help="So many seconds instead.")
 @click.option(
     "--sizes",
-    type=Several(click.IntRange(0, 256)),
-    default=",".join(map(str, DEFAULT_SIZES)),
-    show_default=True,
-    help="Characters, 0 to 256, swept.",
+    type=Several(click.IntRange(0, MAX_FRAME)),
+    help=f"Characters, 0 to 256, with --raw up to {MAX_FRAME} with the codes; swept.  "
+    f"[default: {','.join(map(str, DEFAULT_SIZES))}]",
 )
 @click.option(
     "--pattern",
@@ -62,6 +62,11 @@ if TYPE_CHECKING:
 @click.option(
     "--max-p99", type=click.FloatRange(0, min_open=True), metavar="MS", help="More than this fails."
 )
+@click.option(
+    "--raw",
+    metavar="START,END",
+    help="No 4E, but texts in the frame of a ladder program that sends them back: bytes in hex, or none.",
+)
 @click.option("--seed", type=int, default=0, show_default=True, help="Of the random pattern.")
 @report_option
 @connection_options
@@ -71,27 +76,33 @@ def loopback_command(
     *,
     count: int | None,
     duration: float | None,
-    sizes: tuple[int, ...],
+    sizes: tuple[int, ...] | None,
     patterns: tuple[str, ...],
     interval: float,
     max_error_rate: float,
     max_p99: float | None,
+    raw: str | None,
     seed: int,
     report: Path | None,
 ) -> int:
     """Send characters that the PLC must send back (4E), and count what becomes of them.
 
     Nothing is retried: each exchange counts. Exit 1 if a limit is passed. Ctrl-C shows the figures so far.
+
+    With --raw 02,03 each text goes out between these codes, and is expected back in them: from a ladder
+    program that sends back what it gets (CLINK, MD2). Then no station and no protocol count.
     """
+    frame = None if raw is None else RawFrame.parse(raw)
     plan = LoopbackPlan(
         count=DEFAULT_COUNT if count is None and duration is None else count,
         duration_s=duration,
-        sizes=sizes,
+        sizes=usual_sizes(frame) if sizes is None else sizes,
         patterns=tuple(map(Pattern, patterns)),
         interval_s=interval,
         seed=seed,
         max_error_rate=max_error_rate,
         max_p99_ms=max_p99,
+        raw=frame,
     )
     with connection.open(voice) as plc:
         with LiveFigures(voice) as live:

@@ -82,7 +82,12 @@ def lines(document: dict[str, Any]) -> Iterator[str]:
 def _figures(document: dict[str, Any]) -> Iterator[tuple[str, object]]:
     errors = ", ".join(f"{count} {kind}" for kind, count in document["errors"].items() if count)
     line = f" ({document['line']})" if document["line"] else ""
-    yield "PLC", f"station {document['station']} on {document['target']}{line}"
+    if document["raw"] is None:
+        yield "PLC", f"station {document['station']} on {document['target']}{line}"
+    else:
+        start, end = (code or "none" for code in document["raw"].values())
+        yield "line", f"{document['target']}{line}"
+        yield "frame", f"start {start}, end {end}"
     yield "exchanges", f"{document['sent']} sent, {document['ok']} ok in {document['duration_s']:.1f} s"
     yield "errors", errors or "none"
     rate, most = document["error_rate"], document["error_rate_upper95"]

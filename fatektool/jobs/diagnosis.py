@@ -7,10 +7,11 @@ not work say nothing else.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from fatektool.jobs.evidence import answers_heard, damaged, framed_with_parity, grows, sample
 from fatektool.jobs.finding import Case, Finding
+from fatektool.jobs.raw_rules import raw_altered, raw_echo, raw_nothing_right, raw_silence, raw_twice
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -20,11 +21,12 @@ _SLOW_S: Final = 0.1
 
 def diagnose(case: Case) -> list[Finding]:
     """Run the rules; an empty list is a line with nothing to say about."""
-    for rule in _WHOLE_LINE:
+    whole, rules = (_WHOLE_LINE, _RULES) if case.result.plan.raw is None else (_RAW_WHOLE_LINE, _RAW_RULES)
+    for rule in whole:
         finding = rule(case)
         if finding is not None:
             return [finding]
-    return [finding for rule in _RULES if (finding := rule(case)) is not None]
+    return [finding for rule in rules if (finding := rule(case)) is not None]
 
 
 # --- a line that does not work at all -------------------------------------------------------------------
@@ -190,6 +192,11 @@ def _slow(case: Case) -> Finding | None:
     )
 
 
+def _slow_if_paced(case: Case) -> Finding | None:
+    """What comes sooner than a line carries it may be an echo, whose times are the wire's."""
+    return _slow(case) if case.result.paced else None
+
+
 def _usb_steps(case: Case) -> Finding | None:
     if not case.result.heard.steps.seen:
         return None
@@ -230,13 +237,15 @@ def _no_such_line(case: Case) -> Finding | None:
     )
 
 
-_WHOLE_LINE: Final[tuple[Callable[[Case], Finding | None], ...]] = (
+_Rules: TypeAlias = "tuple[Callable[[Case], Finding | None], ...]"
+
+_WHOLE_LINE: Final[_Rules] = (
     _silence,
     _only_echo,
     _wrong_format,
     _wrong_line,
 )
-_RULES: Final[tuple[Callable[[Case], Finding | None], ...]] = (
+_RULES: Final[_Rules] = (
     _refused,
     _foreign,
     _twins,
@@ -248,3 +257,5 @@ _RULES: Final[tuple[Callable[[Case], Finding | None], ...]] = (
     _echo,
     _no_such_line,
 )
+_RAW_WHOLE_LINE: Final[_Rules] = (raw_silence, raw_nothing_right)
+_RAW_RULES: Final[_Rules] = (raw_twice, raw_altered, _lost, _slow_if_paced, _usb_steps, raw_echo)

@@ -33,7 +33,7 @@ def payloads(
     """Without end: all sizes with the first pattern, all with the next, and round again.
 
     Args:
-        sizes: 0 to 256 characters each.
+        sizes: characters of each.
         patterns: which, in this order.
         characters: what may be sent, in rising order.
         seed: of the random pattern.
@@ -55,6 +55,12 @@ def _payload(pattern: Pattern, size: int, characters: bytes, start: int, random:
         return (characters * (size // len(characters) + 2))[begin : begin + size]
     mask = 0xFF if characters[-1] > 0x7F else 0x7F
     if pattern is Pattern.ONES:
-        return bytes([mask]) * size
-    pair = bytes([0x55, 0xAA & mask]) if start % 2 else bytes([0xAA & mask, 0x55])
+        return _nearest(mask, characters) * size
+    one, other = _nearest(0x55, characters), _nearest(0xAA & mask, characters)
+    pair = one + other if start % 2 else other + one
     return (pair * (size // 2 + 1))[:size]
+
+
+def _nearest(wanted: int, characters: bytes) -> bytes:
+    """The character, or the one with the fewest other bits if it may not be sent."""
+    return bytes([min(characters, key=lambda character: (character ^ wanted).bit_count())])

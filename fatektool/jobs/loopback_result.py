@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import UsageError
 from fatektool.jobs.binomial import upper_bound
@@ -12,9 +12,23 @@ from fatektool.jobs.loopback_data import Pattern
 from fatektool.jobs.steps import Steps
 from fatektool.protocol.commands import MAX_LOOPBACK
 
+if TYPE_CHECKING:
+    from fatektool.jobs.raw_frame import RawFrame
+
 DEFAULT_SIZES: Final = (0, 1, 16, 64, 128, 256)
 DEFAULT_COUNT: Final = 100
 ERRORS: Final = ("timeout", "checksum", "garbled", "mismatch", "stale", "refused")
+
+
+def size_range(raw: RawFrame | None) -> tuple[int, int]:
+    """How few and how many characters one exchange carries."""
+    return (0, MAX_LOOPBACK) if raw is None else (raw.least, raw.most)
+
+
+def usual_sizes(raw: RawFrame | None) -> tuple[int, ...]:
+    """The sizes of a test for which none are named."""
+    least, most = size_range(raw)
+    return tuple(size for size in DEFAULT_SIZES if least <= size <= most)
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,12 +38,13 @@ class LoopbackPlan:
     Args:
         count: exchanges; None for no limit.
         duration_s: begin none after so many seconds; None for no limit.
-        sizes: characters, 0 to 256 each, swept.
+        sizes: characters, 0 to 256 each, swept; in frames of one's own up to 511 bytes with the codes.
         patterns: swept too.
         interval_s: from the start of one to the start of the next; 0 for at once.
         seed: of the random pattern.
         max_error_rate: 0 to 1; more fails.
         max_p99_ms: more fails; None for no limit.
+        raw: start and end code of a ladder program of one's own; None for 4E.
 
     Raises:
         UsageError: a value out of its range.
@@ -43,12 +58,14 @@ class LoopbackPlan:
     seed: int = 0
     max_error_rate: float = 0.0
     max_p99_ms: float | None = None
+    raw: RawFrame | None = None
 
     def __post_init__(self) -> None:
-        wrong = [size for size in self.sizes if not 0 <= size <= MAX_LOOPBACK]
+        least, most = size_range(self.raw)
+        wrong = [size for size in self.sizes if not least <= size <= most]
         if wrong or not self.sizes:
             got = ", ".join(map(str, wrong)) or "none"
-            raise UsageError(f"loopback sizes: expected 0 to {MAX_LOOPBACK} characters, got {got}")
+            raise UsageError(f"loopback sizes: expected {least} to {most} characters, got {got}")
         if not self.patterns:
             raise UsageError("loopback: expected at least one pattern")
 

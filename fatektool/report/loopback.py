@@ -41,7 +41,8 @@ def loopback_report(document: Mapping[str, Any]) -> str:
     Args:
         document: ``fatektool.loopback/1``.
     """
-    where = f"station {document['station']} on {document['target']}"
+    station = document["station"]
+    where = f"station {station} on {document['target']}" if station is not None else document["target"]
     sections = [
         *_diagnosis(document["diagnosis"]),
         section("Errors", _errors(document)),

@@ -129,6 +129,10 @@ class Transport(ABC):
             LineError: it does not take these.
         """
 
+    def set_dtr(self, *, on: bool) -> bool:  # noqa: ARG002  # most media have no such wire
+        """Switch Data Terminal Ready, at whose fall a modem hangs up; False where there is none."""
+        return False
+
     def renew(self) -> None:  # noqa: B027  # most media have nothing to renew
         """Start afresh after a long silence: a connection is made anew at the next write."""
 

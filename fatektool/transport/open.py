@@ -27,32 +27,41 @@ def open_transport(
     *,
     lock_wait_s: float = 10.0,
     note: Callable[[str], None] = no_note,
+    on_lock: Callable[[PortLock], object] = lambda _lock: None,
 ) -> Transport:
-    """Lock a serial port, TCP or UDP target and open it.
+    """Lock a serial port, TCP or UDP target and open it; a modem calls and is connected.
 
     Args:
         target: where; anything but a simulated PLC.
-        line: speed and format of a serial port.
+        line: speed and format of a serial port; of a modem's, to the modem.
         stack: closes the transport and gives the lock back when it ends.
         lock_wait_s: how long to wait for another process.
         note: is told what a curious user may want to know.
+        on_lock: is given the lock.
 
     Raises:
-        LineError: it cannot be opened; PortBusy among them.
+        LineError: it cannot be opened, or the call finds nobody; PortBusy among them.
         UsageError: a target that is no medium.
     """
-    if target.kind is TargetKind.SERIAL:
+    if target.on_serial_port:
         from fatektool.transport.serial_port import open_serial
 
         named = target.is_url or os.name == "nt"  # COM3 is a name, not a path
         device = target.path.upper() if named else os.path.realpath(target.path)
-        _lock(device, lock_wait_s, stack)
-        return stack.enter_context(open_serial(target.path, line, note=note))
+        on_lock(_lock(device, lock_wait_s, stack))
+        port = stack.enter_context(open_serial(target.path, line, note=note))
+        if target.call is None:
+            return port
+        from fatektool.transport.modem import ModemTransport
+
+        modem = stack.enter_context(ModemTransport(port, target.call, note))
+        modem.connect()
+        return modem
     if target.kind in {TargetKind.TCP, TargetKind.UDP}:
         from fatektool.transport.sockets import resolve
 
         address = resolve(target.host, target.port)
-        _lock(f"{address[0]}:{address[1]}", lock_wait_s, stack)
+        on_lock(_lock(f"{address[0]}:{address[1]}", lock_wait_s, stack))
         if target.kind is TargetKind.TCP:
             from fatektool.transport.tcp import TcpTransport
 
@@ -63,7 +72,8 @@ def open_transport(
     raise UsageError(f"target {target.text!r} is no line that can be opened here")
 
 
-def _lock(resource: str, wait_s: float, stack: ExitStack) -> None:
+def _lock(resource: str, wait_s: float, stack: ExitStack) -> PortLock:
     lock = PortLock(resource, wait_s)
     lock.acquire()
     stack.callback(lock.release)
+    return lock

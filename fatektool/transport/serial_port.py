@@ -80,6 +80,14 @@ def _set_line(target: str, line: LineSettings, port: Any) -> None:
         raise _open_error(target, line, error) from error
 
 
+def _set_dtr(port: Any, *, on: bool) -> bool:
+    try:
+        port.dtr = on
+    except (OSError, ValueError, TypeError, AttributeError):  # a pty has none; a closed port has none either
+        return False
+    return True
+
+
 def _open(target: str, line: LineSettings) -> Any:
     import serial
 
@@ -193,6 +201,10 @@ class SerialTransport(Transport):
         _set_line(self.name, line, self._port)
         self.line = str(line)
 
+    def set_dtr(self, *, on: bool) -> bool:
+        """Switch DTR; False if the port says that it has none."""
+        return _set_dtr(self._port, on=on)
+
     def close(self) -> None:
         """Close the port."""
         connection = getattr(self._port, "_socket", None)  # of a URL; pyserial leaves a broken one open
@@ -264,6 +276,10 @@ class DeviceTransport(Transport):
         """Take another speed and format; of a pty, the speed alone."""
         _set_line(self.name, _of_pty(line) if self._pty else line, self._port)
         self.line = str(line)
+
+    def set_dtr(self, *, on: bool) -> bool:
+        """Switch DTR; False if the port says that it has none."""
+        return _set_dtr(self._port, on=on)
 
     def close(self) -> None:
         """Close the port."""

@@ -1,4 +1,4 @@
-"""What ``--port`` names: ``/dev/ttyUSB0``, ``COM3``, ``tcp://host:500``, ``udp://host``, ``sim:FILE``, a URL.
+"""What ``--port`` names: ``/dev/ttyUSB0``, ``COM3``, ``tcp://host:500``, ``sim:FILE``, ``modem:…``, a URL.
 
 ::
 
@@ -6,6 +6,7 @@
     (none)       serial   pyserial, a device
     tcp, udp     net      this project, port 500 unless named (FACON's; other protocols may have none)
     sim          sim      the simulator, within the process
+    modem        modem    a serial port, called through: modem:/dev/ttyUSB0?number=0228082192
     others       serial   pyserial, by its URL handler: rfc2217, socket, spy, …
 """
 
@@ -14,9 +15,12 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from enum import Enum
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import UsageError
+
+if TYPE_CHECKING:
+    from fatektool.transport.dial import Call
 
 _NET: Final = re.compile(
     r"(tcp|udp)://(?:\[([0-9A-Fa-f:.%\w]+)\]|([^/:\[\]@?#\s]+))(?::([0-9]{1,9}))?/?", re.ASCII
@@ -32,6 +36,7 @@ class TargetKind(Enum):
     TCP = "tcp"
     UDP = "udp"
     SIM = "sim"
+    MODEM = "modem"
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +49,7 @@ class Target:
         host: for TCP and UDP.
         port: for TCP and UDP.
         path: the device or URL of a serial port, the file of ``sim:FILE``; empty for ``sim:``.
+        call: whom a modem calls, and how.
     """
 
     text: str
@@ -51,6 +57,7 @@ class Target:
     host: str = ""
     port: int = 0
     path: str = ""
+    call: Call | None = None
 
     @classmethod
     def parse(cls, text: str, *, default_port: int | None = DEFAULT_PORT) -> Target:
@@ -69,7 +76,21 @@ class Target:
             return cls(text, TargetKind.SIM, path=text.removeprefix("sim:"))
         if text.startswith(("tcp:", "udp:")):
             return cls._net(text, default_port)
+        if text.startswith("modem:"):
+            return cls._modem(text)
         return cls(text, TargetKind.SERIAL, path=text)
+
+    @classmethod
+    def _modem(cls, text: str) -> Target:
+        from fatektool.transport.dial import Call
+
+        path, _, query = text.removeprefix("modem:").rpartition("?")  # a URL may have one of its own
+        if not path:
+            raise UsageError(
+                f"target {text[:80]!r}: expected modem:PORT?number=…",
+                hint="such as modem:/dev/ttyUSB0?number=0228082192",
+            )
+        return cls(text, TargetKind.MODEM, path=path, call=Call.parse(query))
 
     @classmethod
     def _net(cls, text: str, default_port: int | None) -> Target:
@@ -90,7 +111,12 @@ class Target:
     @property
     def is_url(self) -> bool:
         """True for a serial port that pyserial opens by URL."""
-        return self.kind is TargetKind.SERIAL and _SCHEME.match(self.text) is not None
+        return self.on_serial_port and _SCHEME.match(self.path) is not None
+
+    @property
+    def on_serial_port(self) -> bool:
+        """True if bytes go through a serial port of this computer, or what pyserial takes for one."""
+        return self.kind in {TargetKind.SERIAL, TargetKind.MODEM}
 
 
 _WAYS: Final = "such as /dev/ttyUSB0, COM3, tcp://192.168.2.3:500, udp://192.168.2.3 or sim:"

@@ -1,0 +1,212 @@
+"""``link modem``: the modem of port 1, shown and set."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fatektool.cli.documents import where
+from fatektool.cli.link_ports import modem_rows
+from fatektool.cli.options import PATH, Connection, connection_options, yes_option
+from fatektool.cli.output import Voice, can_ask, table
+from fatektool.cli.read import warn_of
+from fatektool.cli.way_back import same_again, save_safety
+from fatektool.errors import PlcError, RestoreIncomplete, UsageError
+from fatektool.jobs.link_modem import ModemReport, ModemSettings, plan_modem, read_modem, write_modem
+from fatektool.program.files import require_folder
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from fatektool.client import Plc
+    from fatektool.jobs.link_table import Change, WritePlan
+    from fatektool.jobs.register_writes import NotTaken
+
+
+@click.group("modem", epilog="Example: fatektool link modem show -p /dev/ttyUSB0")
+def modem_command() -> None:
+    """The modem of port 1, as the PLC's registers set it.
+
+    To call a PLC through a modem on this computer, name it as the target: -p 'modem:/dev/ttyUSB0?number=…'.
+    """
+
+
+@modem_command.command("show", epilog="Example: fatektool link modem show -p /dev/ttyUSB0")
+@connection_options
+def show_command(connection: Connection, voice: Voice) -> int:
+    """Show phone number, dialling, auto answer and state of the modem."""
+    with connection.open(voice) as plc:
+        report = read_modem(plc)
+        document = _document(plc, report, None)
+    voice.show(document, table(_rows(report)))
+    warn_of(report.errors, voice)
+    return PlcError.exit_code if not report.raw else 0
+
+
+@modem_command.command(
+    "set", epilog="Example: fatektool link modem set --number 02-28082192 --modem-on --tone -p /dev/ttyUSB0"
+)
+@click.option("--number", metavar="NUMBER", help="To call: digits, ',' for a pause, '#', '*' (R4140-R4145).")
+@click.option("--modem-on/--modem-off", "on", default=None, help="A modem is on port 1, or not (R4149).")
+@click.option("--pulse/--tone", "pulse", default=None, help="How it dials (M1959).")
+@click.option(
+    "--auto-answer",
+    "rings",
+    type=click.IntRange(0, 255),
+    metavar="N",
+    help="Rings before it answers (R4163).",
+)
+@click.option(
+    "--dial-control",
+    type=click.IntRange(1, 4),
+    metavar="N",
+    help="1: waits for no tone, 2: dial tone, 3: busy tone, 4: both (R4163).",
+)
+@click.option(
+    "--profile",
+    type=click.Choice(["factory", "user"]),
+    help="The modem's settings: AT&F or AT&Y (R4163).",
+)
+@click.option("--dry-run", is_flag=True, help="Show what would be written, and write nothing.")
+@click.option(
+    "--safety-dir", type=PATH, metavar="DIR", help="Where the values before are saved; by default here."
+)
+@click.option("--no-safety-snapshot", is_flag=True, help="Do not save the values before: no way back.")
+@yes_option
+@connection_options
+def set_command(
+    connection: Connection,
+    voice: Voice,
+    *,
+    number: str | None,
+    on: bool | None,
+    pulse: bool | None,
+    rings: int | None,
+    dial_control: int | None,
+    profile: str | None,
+    dry_run: bool,
+    safety_dir: Path | None,
+    no_safety_snapshot: bool,
+    yes: bool,
+) -> int:
+    """Set the modem: what is named, and nothing else.
+
+    Only what differs is written; the values before are saved as a safety snapshot first, which 'fatektool
+    snapshot apply' puts back, and all is read back. What the PLC does not take is named (exit 4). If the line
+    fails on the way (exit 6), the same command finishes it. A call through that modem itself may end when its
+    settings change.
+    """
+    if no_safety_snapshot and safety_dir is not None:
+        raise UsageError("--no-safety-snapshot does not go with --safety-dir")
+    folder = None if no_safety_snapshot else require_folder(safety_dir or Path())
+    settings = ModemSettings(
+        number, on, pulse, rings, dial_control, None if profile is None else int(profile == "user")
+    )
+    safety: str | None = None
+    failed: list[NotTaken] = []
+    with connection.open(voice, writes=not dry_run) as plc:
+        plan = plan_modem(plc, settings)
+        if plan.changes and not dry_run:
+            if not yes and not can_ask():
+                raise UsageError(
+                    "this needs a confirmation, and there is no terminal to ask on: nothing was written",
+                    hint="add --yes",
+                )
+            safety = None if folder is None else str(save_safety(plan.present, "modem", folder))
+            for change in plan.changes:
+                voice.say(_change_line(change))
+            voice.say(
+                f"The values before are saved in {safety}" if safety else "The values before are NOT saved."
+            )
+            if not voice.confirm(f"Write {len(plan.changes)} values into the PLC?", yes=yes):
+                raise UsageError("not agreed to: nothing was written")
+            try:
+                failed = write_modem(plc, plan, safety)
+            except RestoreIncomplete as error:
+                error.details["command"] = same_again(connection, "set")
+                error.hint = f"{error.hint}; mend the cause, then: {error.details['command']}"
+                raise
+        report = read_modem(plc)
+        document = _document(plc, report, _set_document(plan, failed, safety=safety, dry_run=dry_run))
+    voice.show(document, _set_lines(plan, failed, report, dry_run=dry_run))
+    warn_of({str(each.element): _did_not(each) for each in failed}, voice)
+    return PlcError.exit_code if failed else 0
+
+
+def _rows(report: ModemReport) -> Iterator[tuple[str, object]]:
+    for name, value in modem_rows(report.modem):
+        yield name, "-" if value is None else value
+
+
+def _text(element_bits: int, value: int) -> str:
+    return f"{value:0{max(1, element_bits // 4)}X}"
+
+
+def _change_line(change: Change) -> str:
+    bits = change.element.kind.bits
+    return f"{change.element}  {_text(bits, change.before)} -> {_text(bits, change.after)}"
+
+
+def _set_lines(
+    plan: WritePlan, failed: list[NotTaken], report: ModemReport, *, dry_run: bool
+) -> Iterator[str]:
+    count = len(plan.changes)
+    if not count:
+        yield "same: nothing was written"
+    elif dry_run:
+        yield from map(_change_line, plan.changes)
+        yield "dry run: nothing was written"
+    else:
+        yield f"{count - len(failed)} of {count} values written and read back, {plan.same} were the same"
+    yield from table(_rows(report))
+
+
+def _did_not(each: NotTaken) -> str:
+    bits = each.element.kind.bits
+    got = "cannot be read" if each.got is None else f"holds {_text(bits, each.got)}"
+    return f"did not take: expected {_text(bits, each.wanted)}, it {got}: {each.reason}"
+
+
+def _document(plc: Plc, report: ModemReport, written: dict[str, Any] | None) -> dict[str, Any]:
+    return {
+        "schema": "fatektool.link-modem/1",
+        **where(plc),
+        "modem": asdict(report.modem),
+        "registers": {
+            name: bool(value) if name.startswith("M") else f"{value:04X}"
+            for name, value in report.raw.items()
+        },
+        "errors": report.errors,
+        "set": written,
+    }
+
+
+def _set_document(
+    plan: WritePlan, failed: list[NotTaken], *, safety: str | None, dry_run: bool
+) -> dict[str, Any]:
+    return {
+        "dry_run": dry_run,
+        "changes": [
+            {
+                "element": str(change.element),
+                "from": _text(change.element.kind.bits, change.before),
+                "to": _text(change.element.kind.bits, change.after),
+            }
+            for change in plan.changes
+        ],
+        "same": plan.same,
+        "written": 0 if dry_run else len(plan.changes) - len(failed),
+        "not_taken": [
+            {
+                "element": str(each.element),
+                "wanted": _text(each.element.kind.bits, each.wanted),
+                "got": None if each.got is None else _text(each.element.kind.bits, each.got),
+                "reason": each.reason,
+            }
+            for each in failed
+        ],
+        "safety_snapshot": safety,
+    }
