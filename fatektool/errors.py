@@ -4,13 +4,16 @@
 
     FatektoolError                     70  a fault of fatektool itself
     ├── UsageError                      2  a bad option or value, a refused question
+    │   └── LineReadOnly                   a write over a line that may only be read
     ├── LineError                       3  no or no usable answer, port not there or in use
     │   ├── TransportError                 the medium failed
     │   │   ├── TransportTimeout           nothing came in time (one read, not one exchange)
     │   │   └── TransportClosed            the other side or the cable is gone
     │   ├── PortBusy                       another process holds the port
     │   ├── FrameError                     bytes that are no frame
-    │   └── NoAnswer                       an exchange found no answer, retries included
+    │   ├── NoAnswer                       an exchange found no answer, retries included
+    │   ├── DeadlinePassed                 the limit of time for this PLC is over
+    │   └── PushFailed                     a history did not reach the other repository; it is kept here
     ├── PlcError                        4  the PLC is reached and will not or must not
     │   ├── PlcRefused                     an error code in its answer
     │   └── PlcNotReady                    RUN where STOP is needed, ROM pack fitted
@@ -59,6 +62,20 @@ class UsageError(FatektoolError):
     exit_code = 2
 
 
+class LineReadOnly(UsageError):
+    """A write over a line that may only be read.
+
+    Args:
+        what: wanted to write.
+    """
+
+    def __init__(self, what: str) -> None:
+        super().__init__(
+            f"{what}: this line is read-only, and nothing was sent",
+            hint="to write, leave out --read-only, FATEKTOOL_READ_ONLY and the inventory's read_only",
+        )
+
+
 class LineError(FatektoolError):
     """No or no usable answer; or the port cannot be had."""
 
@@ -98,6 +115,14 @@ class FrameError(LineError):
 
 class NoAnswer(LineError):
     """One exchange and its retries found no answer to trust."""
+
+
+class DeadlinePassed(LineError):
+    """The overall limit of time for this PLC is over."""
+
+
+class PushFailed(LineError):
+    """A history did not reach another repository. What was recorded here stays recorded."""
 
 
 class PlcError(FatektoolError):

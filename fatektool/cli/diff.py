@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fatektool.cli.output import Voice
+    from fatektool.program.image import Program
 
 
 @click.command("diff", epilog="Example: fatektool diff monday.json tuesday.json")
@@ -27,15 +28,22 @@ if TYPE_CHECKING:
 @voice_options
 def diff_command(a: Path, b: Path, voice: Voice, *, report: Path | None) -> int:
     """Compare the backups A and B: exit 0 if the programs are the same, 1 if not. Needs no PLC."""
-    one, other = load_backup(a).program, load_backup(b).program
+    return show_difference((str(a), load_backup(a).program), (str(b), load_backup(b).program), voice, report)
+
+
+def show_difference(
+    a: tuple[str, Program], b: tuple[str, Program], voice: Voice, report: Path | None = None
+) -> int:
+    """Print what differs between two programs, each with what it is called; give the exit code."""
+    (a_name, one), (b_name, other) = a, b
     found = compare(one, other)
     document = {
         "schema": "fatektool.diff/1",
-        "a": {"file": str(a), "sha256": one.sha256},
-        "b": {"file": str(b), "sha256": other.sha256},
+        "a": {"file": a_name, "sha256": one.sha256},
+        "b": {"file": b_name, "sha256": other.sha256},
         **differences(found),
     }
-    voice.show(document, difference_lines(found, f"same: {len(one.pages)} pages", str(a), str(b)))
+    voice.show(document, difference_lines(found, f"same: {len(one.pages)} pages", a_name, b_name))
     if report is not None:
         from fatektool.report.program import diff_report
 

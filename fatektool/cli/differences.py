@@ -29,8 +29,7 @@ def difference_lines(found: Comparison, same: str, a: str, b: str) -> Iterator[s
     if found.a_ladder_words != found.b_ladder_words:
         yield f"differs: ladder size {found.a_ladder_words} words in {a}, {found.b_ladder_words} in {b}"
     if found.pages:
-        size = f"{_count(found.word_count, 'word')} in {_count(len(found.pages), 'page')}"
-        yield f"differs: {size} ({a} -> {b})"
+        yield f"differs: {_extent(found)} ({a} -> {b})"
     for page in found.pages:
         if not page.words:
             yield f"  page {page.page}: only in one of them"
@@ -39,6 +38,17 @@ def difference_lines(found: Comparison, same: str, a: str, b: str) -> Iterator[s
         more = len(page.words) - _WORDS_SHOWN
         rest = f", {more} more" if more > 0 else ""
         yield f"  page {page.page}, {len(page.words)} of {PAGE_WORDS} words: {shown}{rest}"
+
+
+def size_of(found: Comparison) -> str:
+    """How much differs, in words: ``3 words in 1 page``."""
+    if found.a_ladder_words != found.b_ladder_words:
+        return f"ladder size {found.a_ladder_words} words, and {found.b_ladder_words}"
+    return _extent(found)
+
+
+def _extent(found: Comparison) -> str:
+    return f"{_count(found.word_count, 'word')} in {_count(len(found.pages), 'page')}"
 
 
 def _count(number: int, noun: str) -> str:

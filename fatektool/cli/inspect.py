@@ -33,10 +33,11 @@ def inspect_command(file: Path, voice: Voice, *, raw: Path | None, force: bool) 
     if raw is not None:
         write_whole(raw, found.program.data, overwrite=force)
         voice.say(f"{len(found.program.data)} bytes written to {raw}")
-    voice.show(inspect_document(found, file), table(_rows(found, file)))
+    voice.show(inspect_document(found, file), table(backup_rows(found, str(file))))
 
 
-def _rows(found: Backup, file: Path) -> Iterator[tuple[str, object]]:
+def backup_rows(found: Backup, file: str) -> Iterator[tuple[str, object]]:
+    """What a backup holds, as rows; ``file`` is what it is called."""
     program, source = found.program, found.source
     used = sum(page != b"\xff" * len(page) for page in program.pages[1:])
     status = found.plc["status"]

@@ -8,7 +8,7 @@ The order of a commit, and what a crash leaves::
     4. fsync the folder                              FILE survives a power cut
 
 A symlink is followed: the file that it names is replaced, not the link. Files are made with the user's
-umask and never wider than 0640, as a program is somebody's property.
+umask and never wider than 0640 unless asked for, as a program is somebody's property.
 """
 
 from __future__ import annotations
@@ -32,6 +32,8 @@ def require_place(path: Path, *, overwrite: bool) -> Path:
     """
     try:
         real = Path(os.path.realpath(path))
+        if real.is_symlink():
+            raise UsageError(f"{path} is a symbolic link that leads to itself", file=str(path))
         if real.is_dir():
             raise UsageError(f"{path} is a folder, expected a file name", file=str(path))
         if real.exists() and not real.is_file():
@@ -50,15 +52,25 @@ def require_folder(path: Path) -> Path:
     Raises:
         UsageError: it is no folder, or not writable.
     """
-    if not path.is_dir():
+    try:
+        is_folder = path.is_dir()
+    except (OSError, ValueError) as error:  # a name that is too long, or none
+        raise file_error("look at", path, error) from error
+    if not is_folder:
         raise UsageError(f"{path} is no folder", hint="make it first, or name another", file=str(path))
     if not os.access(path, os.W_OK):
         raise UsageError(f"folder {path} is not writable", hint="choose another place", file=str(path))
     return path
 
 
-def write_whole(path: Path, data: bytes, *, overwrite: bool) -> None:
+def write_whole(path: Path, data: bytes, *, overwrite: bool, mode: int = _MODE) -> None:
     """Write a file so that it is whole or absent, on disk when this returns.
+
+    Args:
+        path: the file.
+        data: its bytes.
+        overwrite: replace one that is there.
+        mode: its rights, less the user's umask; another for what is nobody's secret.
 
     Raises:
         UsageError: it exists and ``overwrite`` is False, or its folder cannot be written.
@@ -67,12 +79,12 @@ def write_whole(path: Path, data: bytes, *, overwrite: bool) -> None:
     real = require_place(path, overwrite=overwrite)
     temporary = real.parent / f".fatektool-{secrets.token_hex(6)}.tmp"
     try:
-        _write_synced(temporary, data)
+        write_synced(temporary, data, mode)
         if overwrite:
             temporary.replace(real)
         else:
             _put_new(temporary, real)
-        _sync_folder(real.parent)
+        sync_folder(real.parent)
     except FileExistsError as error:
         raise exists_already(path) from error
     except OSError as error:
@@ -121,9 +133,14 @@ def file_error(what: str, path: Path, error: OSError | ValueError) -> FatektoolE
     return UsageError(message, hint="check the name and its rights", file=str(path))
 
 
-def _write_synced(path: Path, data: bytes) -> None:
+def write_synced(path: Path, data: bytes, mode: int = _MODE) -> None:
+    """Write a new file, on disk when this returns but for its name: that is ``sync_folder``'s.
+
+    Raises:
+        OSError: it exists, or cannot be written whole.
+    """
     flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
-    with os.fdopen(os.open(path, flags, _MODE), "wb") as file:
+    with os.fdopen(os.open(path, flags, mode), "wb") as file:
         file.write(data)
         file.flush()
         os.fsync(file.fileno())
@@ -141,7 +158,12 @@ def _put_new(temporary: Path, real: Path) -> None:
         temporary.rename(real)
 
 
-def _sync_folder(folder: Path) -> None:
+def sync_folder(folder: Path) -> None:
+    """See to it that the names in a folder survive a power cut.
+
+    Raises:
+        OSError: the disk fails.
+    """
     if os.name == "nt":  # a folder cannot be opened there
         return
     descriptor = os.open(folder, os.O_RDONLY)

@@ -1,0 +1,16 @@
+"""The history of many PLCs' programs: a git repository with a file a PLC, and a commit for each change.
+
+Any git reads it, and none is needed: dulwich is git in Python. The repository is bare, so that there is no
+work tree to go astray, and nothing for a killed run to leave half written::
+
+    NAME.json        the backup file, as 'backup' writes it; one page a line, so that 'git log -p' shows pages
+    commit           one PLC's program changed; a new time, status or version alone is no change
+
+Who looks for what::
+
+    history      record, log, show, export: what a caller uses     checking     is all of it whole?
+    repository   reading, every object proven by its hash          revisions    'a1b2c3d', '2026-11-22', '~1'
+    writing      objects and branch, in an order that holds        messages     who and what, in words
+    packing      many small files into one                         names        what a PLC may be called
+    push         a copy in another repository
+"""

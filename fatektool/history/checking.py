@@ -1,0 +1,139 @@
+"""Is all of a history whole? Every object by its hash, every stored file by the backup's own rules."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from fatektool.errors import DataError
+from fatektool.history.names import name_of
+from fatektool.history.repository import Repository
+from fatektool.history.revisions import SHORT
+from fatektool.program.archive import Backup
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from fatektool.history.repository import Commit
+
+_FOLDER: Final = 0o040000
+_SUBMODULE: Final = 0o160000
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """What does not hold.
+
+    Attributes:
+        revision: the newest commit in which it was found, 40 hex digits; None if it is the repository itself.
+        name: the PLC; None if it is none's alone.
+        message: what is wrong.
+    """
+
+    revision: str | None
+    name: str | None
+    message: str
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """A history, looked through.
+
+    Attributes:
+        commits: how many.
+        programs: how many stored programs, each version once.
+        names: the PLCs that it holds now.
+        faults: what does not hold; empty if all does.
+    """
+
+    commits: int
+    programs: int
+    names: tuple[str, ...]
+    faults: tuple[Fault, ...]
+
+
+def check(folder: Path, progress: Callable[[str, int, int], None] = lambda *_: None) -> Checked:
+    """Look a history through, from the newest commit to the first.
+
+    Args:
+        folder: the repository.
+        progress: told of each commit.
+
+    Raises:
+        UsageError: there is no such folder, or it may not be read.
+        DataError: it is no repository at all.
+    """
+    with Repository(folder) as repository:
+        return _Check(repository).run(progress)
+
+
+class _Check:
+    """What was looked at already, and what was found."""
+
+    def __init__(self, repository: Repository) -> None:
+        self.repository = repository
+        self.seen: set[str] = set()
+        self.programs = 0
+        self.faults: list[Fault] = []
+
+    def run(self, progress: Callable[[str, int, int], None]) -> Checked:
+        commits = self.commits()
+        names: tuple[str, ...] = ()
+        for number, commit in enumerate(commits, 1):
+            try:
+                if number == 1:
+                    names = tuple(sorted(self.repository.files(commit.tree)))
+                self.tree(commit, commit.tree, root=True)
+            except DataError as error:
+                self.faults.append(Fault(commit.revision, None, error.message))
+            progress("checking", number, len(commits))
+        return Checked(len(commits), self.programs, names, tuple(self.faults))
+
+    def commits(self) -> list[Commit]:
+        """All commits that can be reached, newest first."""
+        found: list[Commit] = []
+        try:
+            tip = self.repository.tip()
+        except DataError as error:
+            self.faults.append(Fault(None, None, error.message))
+            return found
+        waiting = [] if tip is None else [tip]
+        while waiting:
+            sha = waiting.pop(0)
+            if sha in self.seen:
+                continue
+            self.seen.add(sha)
+            try:
+                commit = self.repository.commit(sha)
+            except DataError as error:
+                self.faults.append(Fault(sha, None, error.message))
+                continue
+            found.append(commit)
+            waiting += commit.parents
+        return found
+
+    def tree(self, commit: Commit, sha: str, *, root: bool = False) -> None:
+        """A tree and what is in it, each object once."""
+        if sha in self.seen:
+            return
+        self.seen.add(sha)
+        for path, mode, item in self.repository.tree(sha).items():
+            child = item.decode()
+            if child in self.seen or mode == _SUBMODULE:
+                continue
+            name = name_of(path) if root else None
+            try:
+                if mode == _FOLDER:
+                    self.tree(commit, child)
+                else:
+                    self.seen.add(child)
+                    self.file(commit, name, self.repository.read(child, "blob"))
+            except DataError as error:
+                self.faults.append(Fault(commit.revision, name, error.message))
+
+    def file(self, commit: Commit, name: str | None, data: bytes) -> None:
+        """A file; what is no PLC's is somebody else's."""
+        if name is not None:
+            self.programs += 1
+            Backup.parse(data, f"{name}@{commit.revision[:SHORT]}")

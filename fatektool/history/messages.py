@@ -1,0 +1,102 @@
+"""What a commit says: who it was made for, and what changed.
+
+::
+
+    press-3: 4 words in 2 pages changed
+
+    pages    3, 5
+    sha256   1cfe93ed… before
+    sha256   9a0b5c1d… after
+    program  FB30, 13184 words
+    source   station 1 on tcp://192.168.2.3, facon
+    read     2026-11-22T03:15:00Z by fatektool 0.1.0
+
+Author is the PLC, with the time at which its program was read; committer is fatektool on its computer, with
+the time at which it was recorded. All of it is printable text on its own line, whatever a target is called.
+"""
+
+from __future__ import annotations
+
+import re
+import socket
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING
+
+from fatektool.program.image import ranges
+
+if TYPE_CHECKING:
+    from fatektool.program.archive import Backup
+    from fatektool.program.compare import Comparison
+
+
+def subject(name: str, found: Comparison | None, *, damaged: bool = False) -> str:
+    """The message's first line.
+
+    Args:
+        name: the PLC.
+        found: the old program against the new one; None if there is no old one.
+        damaged: True if there is one, and it cannot be read.
+    """
+    if found is None:
+        return f"{name}: backup again, the one before is damaged" if damaged else f"{name}: first backup"
+    if found.a_ladder_words != found.b_ladder_words:
+        size = f"ladder size {found.a_ladder_words} -> {found.b_ladder_words} words, "
+    else:
+        size = ""
+    return f"{name}: {size}{count(found.word_count, 'word')} in {count(len(found.pages), 'page')} changed"
+
+
+def message(first_line: str, found: Comparison | None, old: Backup | None, new: Backup) -> bytes:
+    """The whole message.
+
+    Args:
+        first_line: the subject.
+        found: the old program against the new one; None if there is no old one.
+        old: the backup before; None if there is none to read.
+        new: the backup that is recorded.
+    """
+    source = new.source
+    line = f", {source.line}" if source.line else ""
+    rows = []
+    if found is not None and old is not None:
+        rows += [("pages", ranges(found.page_numbers)), ("sha256", f"{old.program.sha256} before")]
+    rows += [
+        ("sha256", f"{new.program.sha256}{' after' if old is not None else ''}"),
+        ("program", f"{new.program.header.signature or 'unknown'}, {new.program.ladder_words} words"),
+        ("source", f"station {source.station} on {source.target}, {source.protocol}{line}"),
+        ("read", f"{new.created} by {new.tool}"),
+    ]
+    body = "".join(f"{key:<8} {_plain(value)}\n" for key, value in rows)
+    return f"{_plain(first_line)}\n\n{body}".encode()
+
+
+def author(name: str, backup: Backup) -> bytes:
+    """The PLC as git names people: ``press-3 <station-1@192.168.2.3:500>``."""
+    place = backup.source.target.rpartition("://")[2]
+    return f"{name} <station-{backup.source.station}@{_address(place)}>".encode()
+
+
+def committer() -> bytes:
+    """This program on this computer."""
+    return f"fatektool <fatektool@{_address(socket.gethostname())}>".encode()
+
+
+def read_at(backup: Backup, otherwise: int) -> int:
+    """When the program was read, in seconds since 1970; else another time, if git cannot hold that."""
+    try:
+        return max(0, int(datetime.fromisoformat(backup.created).astimezone(UTC).timestamp()))
+    except (ValueError, OverflowError):
+        return otherwise
+
+
+def count(number: int, noun: str) -> str:
+    """A number with its noun: ``1 word``, ``2 words``."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
+def _address(text: str) -> str:
+    return re.sub(r"[^\w.:/+-]+", "-", text).strip("-.:") or "unknown"
+
+
+def _plain(text: str) -> str:
+    return "".join(char if char.isprintable() else "?" for char in text)

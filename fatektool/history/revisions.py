@@ -1,0 +1,102 @@
+"""Which commit is meant.
+
+::
+
+    HEAD  HEAD~2          the newest; the one two commits before it, of whatever PLC
+    ~1                    this PLC's program as it was before its last change; ~2, before the one before that
+    a1b2c3d               a hash, or four digits of one and more
+    2026-11-22            the last of that day or before, UTC; 2026-11-22T03:15:00Z likewise
+"""
+
+from __future__ import annotations
+
+import re
+from datetime import UTC, datetime, timedelta
+from itertools import islice
+from typing import TYPE_CHECKING, Final
+
+from fatektool.errors import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from fatektool.history.repository import Commit, Repository
+
+SHORT: Final = 10
+_BACK: Final = re.compile(r"HEAD(?:~(\d{1,6}))?", re.ASCII)
+_CHANGES_BACK: Final = re.compile(r"~(\d{1,6})", re.ASCII)
+_HASH: Final = re.compile(r"[0-9a-f]{4,40}", re.ASCII | re.IGNORECASE)
+_DAY: Final = re.compile(r"\d{4}-\d\d-\d\d", re.ASCII)
+_TIME: Final = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d(:\d\d)?Z", re.ASCII)
+
+
+def changes_of(name: str, repository: Repository, start: str | None) -> Iterator[Commit]:
+    """The commits in which one PLC's file changed, newest first.
+
+    Raises:
+        DataError: the history does not hold.
+    """
+    after: Commit | None = None
+    seen: str | None = None
+    trees: dict[str, str | None] = {}
+    for commit in repository.chain(start):
+        if commit.tree not in trees:
+            trees = {commit.tree: repository.files(commit.tree).get(name)}
+        blob = trees[commit.tree]
+        if after is not None and blob != seen:
+            yield after
+        after, seen = commit, blob
+    if after is not None and seen is not None:
+        yield after
+
+
+def resolve(repository: Repository, name: str, revision: str) -> Commit:
+    """The commit that a revision means.
+
+    Args:
+        repository: the history.
+        name: the PLC whose changes ``~N`` counts.
+        revision: as the user named it.
+
+    Raises:
+        UsageError: it means none.
+        DataError: the history does not hold.
+    """
+    chain = repository.chain(repository.tip())
+    found: Commit | None
+    if back := _BACK.fullmatch(revision):
+        found = next(islice(chain, int(back[1] or 0), None), None)
+    elif back := _CHANGES_BACK.fullmatch(revision):
+        found = next(islice(changes_of(name, repository, repository.tip()), int(back[1]), None), None)
+    elif _DAY.fullmatch(revision) or _TIME.fullmatch(revision):
+        last = _last_second(revision)
+        found = next((commit for commit in chain if commit.time <= last), None)
+    elif _HASH.fullmatch(revision):
+        found = _by_hash(chain, revision.lower())
+    else:
+        raise UsageError(
+            f"{revision!r} is no revision: expected a hash such as a1b2c3d, HEAD~2, ~1, "
+            f"or a date such as 2026-11-22"
+        )
+    if found is None:
+        raise UsageError(
+            f"there is no revision {name}@{revision} in {repository.folder}",
+            hint=f"see 'fatektool history log {name}'",
+        )
+    return found
+
+
+def _by_hash(chain: Iterator[Commit], digits: str) -> Commit | None:
+    found = [commit for commit in chain if commit.revision.startswith(digits)]
+    if len(found) > 1:
+        first = ", ".join(each.revision[:SHORT] for each in found[:5])
+        raise UsageError(f"{digits} begins {len(found)} revisions: {first}", hint="give more digits")
+    return found[0] if found else None
+
+
+def _last_second(text: str) -> int:
+    try:
+        began = datetime.fromisoformat(text).replace(tzinfo=UTC)
+        return int((began + (timedelta(days=1, seconds=-1) if "T" not in text else timedelta())).timestamp())
+    except (ValueError, OverflowError) as error:
+        raise UsageError(f"{text}: there is no such day or time") from error

@@ -1,0 +1,226 @@
+"""Writing a history, in an order that holds whenever it ends.
+
+::
+
+    1. blob, tree, commit   each to objects/xx/tmp_obj_…, fsync, rename, fsync of the folder
+    2. fatektool.ref        the commit's hash, fsync
+    3. main.lock            a hard link to it: git's own lock, so that no 'git gc' or 'git push' is in between
+    4. the branch           is it still what the commit was made from? Then rename of main.lock, fsync
+
+A run that is killed or has no room at 1 to 3 leaves objects that nothing names, which git passes over, and
+the branch as it was. A lock left at 3 has the bytes of ``fatektool.ref``: that is how the next run knows it
+for its own, and takes it away. Runs keep off each other by ``fatektool.lock``, which the kernel frees with
+its process.
+
+A new repository gets its HEAD last: until then it is none, and the next run goes on making it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import os
+import secrets
+import time
+from typing import TYPE_CHECKING, Final
+
+from fatektool.errors import PortBusy, UsageError
+from fatektool.history.repository import is_repository
+from fatektool.program.files import file_error, sync_folder, write_synced
+from fatektool.transport.lock import PortLock
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from dulwich.objects import ShaFile
+
+LOCK: Final = "fatektool.lock"
+STAGE: Final = "fatektool.ref"
+TEMPORARY: Final = "tmp_obj_fatektool-"
+_HEAD: Final = b"ref: refs/heads/main\n"
+_CONFIG: Final = b"[core]\n\trepositoryformatversion = 0\n\tfilemode = true\n\tbare = true\n"
+_FOLDERS: Final = ("objects", "objects/info", "objects/pack", "refs", "refs/heads", "refs/tags")
+_MADE: Final = {"objects", "refs", "config", LOCK, "HEAD.tmp", "config.tmp"}
+_FOLDER_MODE: Final = 0o750
+_LOCK_MODE: Final = 0o640
+_STALE_S: Final = 3600.0  # git holds the lock of a branch for milliseconds
+_POLL_S: Final = 0.05
+_NO_LINKS: Final = {
+    errno.EPERM,
+    errno.ENOTSUP,
+    errno.EOPNOTSUPP,
+    errno.ENOSYS,
+    errno.EINVAL,
+}  # FAT and others
+
+
+@contextlib.contextmanager
+def writing(folder: Path, wait_s: float) -> Iterator[None]:
+    """The right of this process to write a history, made if it is not there.
+
+    Args:
+        folder: the repository.
+        wait_s: how long to wait for another process.
+
+    Raises:
+        UsageError: it cannot be made here.
+        DataError: the disk is full.
+        PortBusy: another process writes it, and goes on.
+    """
+    try:
+        if not folder.is_dir():
+            folder.mkdir(_FOLDER_MODE)
+            sync_folder(folder.parent)
+        if not is_repository(folder):
+            _require_ours(folder)
+        lock = PortLock(os.path.realpath(folder), wait_s)
+        lock.path = folder / LOCK  # beside what it guards: the same for all users and computers
+        if not lock.path.exists():
+            lock.path.touch(_LOCK_MODE)
+        lock.acquire()
+        try:
+            if not is_repository(folder):
+                _make(folder)
+            yield
+        finally:
+            lock.release()
+    except OSError as error:
+        raise file_error("write", folder, error) from error
+
+
+def _require_ours(folder: Path) -> None:
+    others = sorted(path.name for path in folder.iterdir() if path.name not in _MADE)
+    if others:
+        raise UsageError(
+            f"{folder} is neither empty nor a bare git repository: {others[0]!r} lies there",
+            hint="name another folder",
+            file=str(folder),
+        )
+
+
+def _make(folder: Path) -> None:
+    for name in _FOLDERS:
+        (folder / name).mkdir(_FOLDER_MODE, exist_ok=True)
+    for name, data in (("config", _CONFIG), ("HEAD", _HEAD)):
+        temporary = folder / f"{name}.tmp"
+        temporary.unlink(missing_ok=True)
+        write_synced(temporary, data)
+        temporary.replace(folder / name)
+        sync_folder(folder)
+
+
+def write_object(folder: Path, found: ShaFile) -> None:
+    """Put an object into the repository; one that is there anew, as it may be damaged or about to go.
+
+    Args:
+        folder: the repository.
+        found: the object.
+
+    Raises:
+        OSError: the disk is full or broken.
+    """
+    sha = found.id.decode()
+    place = folder / "objects" / sha[:2]
+    if not place.is_dir():
+        place.mkdir(_FOLDER_MODE, exist_ok=True)
+        sync_folder(place.parent)
+    temporary = place / f"{TEMPORARY}{secrets.token_hex(6)}"
+    try:
+        write_synced(temporary, found.as_legacy_object())
+        temporary.replace(place / sha[2:])
+        sync_folder(place)
+    finally:
+        with contextlib.suppress(OSError):
+            temporary.unlink(missing_ok=True)
+
+
+def move_branch(
+    folder: Path,
+    branch: str,
+    new: str,
+    still: Callable[[], bool],
+    *,
+    wait_s: float,
+    clock: Callable[[], float] = time.monotonic,
+    sleep: Callable[[float], None] = time.sleep,
+) -> bool:
+    """Let a branch name another commit, if it is still what that was made from.
+
+    Args:
+        folder: the repository.
+        branch: ``refs/heads/main``.
+        new: the commit.
+        still: looks whether the branch is as it was; called while nobody else can move it.
+        wait_s: how long to wait for another git program.
+        clock: seconds; for tests.
+        sleep: waits so many seconds; for tests.
+
+    Returns:
+        False if the branch was moved meanwhile, and nothing was done.
+
+    Raises:
+        PortBusy: another git program holds the branch.
+        OSError: the disk is full or broken.
+    """
+    path, lock, stage = folder / branch, folder / f"{branch}.lock", folder / STAGE
+    path.parent.mkdir(_FOLDER_MODE, parents=True, exist_ok=True)
+    drop_stale(folder, branch)
+    try:
+        write_synced(stage, new.encode() + b"\n")
+        deadline = clock() + wait_s
+        while not _taken(stage, lock):
+            if not clock() < deadline:
+                raise PortBusy(
+                    f"{path} is held by another git program: {lock} is there",
+                    hint="let that end, or remove the file if there is none",
+                    resource=str(path),
+                )
+            sleep(_POLL_S)
+        if not still():
+            return False
+        lock.replace(path)
+        sync_folder(path.parent)
+        return True
+    finally:
+        with contextlib.suppress(OSError):
+            drop_stale(folder, branch)
+
+
+def drop_stale(folder: Path, branch: str) -> None:
+    """Take away what a killed run left of steps 2 and 3; a lock of another git only when it is an hour old.
+
+    Raises:
+        OSError: it cannot be taken away.
+    """
+    lock, stage = folder / f"{branch}.lock", folder / STAGE
+    with contextlib.suppress(FileNotFoundError):
+        held = lock.read_bytes()
+        ours = stage.exists() and held == stage.read_bytes()
+        if ours or time.time() - lock.stat().st_mtime > _STALE_S:
+            lock.unlink(missing_ok=True)
+    stage.unlink(missing_ok=True)
+
+
+def _taken(stage: Path, lock: Path) -> bool:
+    try:
+        os.link(stage, lock)
+    except FileExistsError:
+        return False
+    except OSError as error:
+        if error.errno not in _NO_LINKS:
+            raise
+        return _taken_by_copy(stage, lock)
+    return True
+
+
+def _taken_by_copy(stage: Path, lock: Path) -> bool:
+    """The same where there are no hard links."""
+    try:
+        write_synced(lock, stage.read_bytes())
+    except FileExistsError:
+        return False
+    except OSError:
+        lock.unlink(missing_ok=True)
+        raise
+    return True
