@@ -37,6 +37,13 @@ class Timing(NamedTuple):
 @contextlib.contextmanager
 def simulator(*options: str) -> Iterator[str]:
     """A simulator as long as the context lasts; gives its target."""
+    with doors(*options) as targets:
+        yield targets[0]
+
+
+@contextlib.contextmanager
+def doors(*options: str) -> Iterator[list[str]]:
+    """A simulator with many doors as long as the context lasts; gives their targets."""
     command = pinned(0, [sys.executable, "-m", "fatektool", "simulate", "--json", *options])
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         try:
@@ -44,7 +51,7 @@ def simulator(*options: str) -> Iterator[str]:
             text = ""
             while not text.endswith("}\n"):
                 text += process.stdout.readline()
-            yield json.loads(text)["listening"][0]
+            yield json.loads(text)["listening"]
         finally:
             process.terminate()
 

@@ -8,15 +8,26 @@ from __future__ import annotations
 
 from contextlib import ExitStack
 from math import inf
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from fatektool.client import Plc
-from fatektool.errors import UsageError
+from fatektool.errors import PlcError, PlcRefused, UsageError
 from fatektool.link import Link
-from fatektool.protocol.codec import require_commands
+from fatektool.protocol.codec import require_commands, require_station
+from fatektool.protocol.commands import ReadRegisters
+from fatektool.protocol.elements import Element
 from fatektool.protocol.facon import FACON
+from fatektool.protocol.modbus import ASCII, RTU, TCP, ModbusCodec
+from fatektool.protocol.modbus_map import (
+    FIRST_REGISTER,
+    REGISTER_COUNT,
+    STANDARD,
+    STANDARD_NAME,
+    map_of_registers,
+)
 from fatektool.protocol.mseries import MSERIES
 from fatektool.transport.base import LineSettings, no_note
+from fatektool.transport.limit import LimitedTransport
 from fatektool.transport.target import Target, TargetKind
 
 if TYPE_CHECKING:
@@ -25,9 +36,16 @@ if TYPE_CHECKING:
 
     from fatektool.protocol.codec import Codec
     from fatektool.protocol.commands import Command
+    from fatektool.protocol.modbus_map import ModbusMap
     from fatektool.transport.base import Transport
+    from fatektool.transport.limit import Limit
+    from fatektool.transport.lock import PortLock
 
-CODECS: dict[str, Codec] = {FACON.name: FACON, MSERIES.name: MSERIES}
+CODECS: dict[str, Codec] = {codec.name: codec for codec in (FACON, MSERIES, RTU, ASCII, TCP)}
+
+
+def _to_nobody(_: object) -> None:
+    pass
 
 
 def codec_named(protocol: str) -> Codec:
@@ -44,7 +62,49 @@ def codec_named(protocol: str) -> Codec:
 
 def usual_format(protocol: str) -> str:
     """The line format of a protocol unless one is named: even parity and as many data bits as it needs."""
-    return f"{codec_named(protocol).data_bits}E1"
+    return f"{codec_named(protocol).data_bits or 8}E1"
+
+
+def mapped(codec: Codec, modbus_map: ModbusMap) -> Codec:
+    """The same protocol over another Modbus map.
+
+    Raises:
+        UsageError: it has none.
+    """
+    if not isinstance(codec, ModbusCodec):
+        raise UsageError(f"a Modbus map is for a Modbus protocol, not for {codec.name}")
+    return codec.mapped(modbus_map)
+
+
+def map_in_plc(link: Link) -> ModbusMap:
+    """The map that the PLC's own R3968 to R3980 describe, read over Modbus.
+
+    With R3968 = A55AH the standard references are gone, R3968's too, unless the map's own range holds them:
+    then, and only then, what is read there describes just that.
+
+    Raises:
+        PlcError: they cannot be read, or another map is in force.
+        LineError: no answer.
+    """
+    first = Element("R", FIRST_REGISTER)
+    hint = (
+        "'fatektool snapshot R3968-R3980 -o map.json' on a port that speaks FACON, then --modbus-map map.json"
+    )
+    try:
+        words: tuple[int, ...] = link.ask(ReadRegisters(first, REGISTER_COUNT))
+        found = map_of_registers(words)
+    except PlcRefused as error:
+        raise PlcError(f"--modbus-map custom: R3968 cannot be read: {error.message}", hint=hint) from error
+    try:
+        here = found.place(first, REGISTER_COUNT).offset == FIRST_REGISTER
+    except UsageError:
+        here = False
+    if found.name == STANDARD_NAME or not here:
+        raise PlcError(
+            "--modbus-map custom: where R3968 would be, the PLC does not show a map of its own in force",
+            hint=f"leave the option out; if the PLC has one, {hint}",
+        )
+    return found
 
 
 def connect(
@@ -59,22 +119,31 @@ def connect(
     lock_wait_s: float = 10.0,
     trace: Path | None = None,
     needs: Iterable[Command] = (),
+    limit: Limit | None = None,
+    read_only: bool = False,
+    modbus_map: ModbusMap | Literal["custom"] | None = None,
     note: Callable[[str], None] = no_note,
 ) -> Plc:
-    """Open the line to a PLC. Nothing is sent yet.
+    """Open the line to a PLC. Nothing is sent yet, but for ``modbus_map="custom"``.
 
     Args:
         target: ``/dev/ttyUSB0``, ``COM3``, a pyserial URL, ``tcp://host[:500]``, ``udp://host[:500]``,
-            ``sim:`` or ``sim:FILE``. M-series over TCP has no usual port: it must be named.
+            ``sim:`` or ``sim:FILE``, ``modem:/dev/ttyUSB0?number=0228082192`` (which calls). M-series over
+            TCP has no usual port: it must be named.
         station: 1 to 254.
-        protocol: ``facon`` or ``mseries``.
+        protocol: ``facon``, ``mseries``, ``modbus-rtu``, ``modbus-ascii`` or ``modbus-tcp``.
         baud: speed of the serial line; over TCP and UDP that of the line behind a gateway.
-        format: data bits, parity, stop bits; by default 7E1, and 8E1 for ``mseries``.
+        format: data bits, parity, stop bits; by default 7E1, and 8E1 for ``mseries`` and
+            ``modbus-rtu``.
         timeout_s: the PLC's time to answer, beside wire time.
         retries: further tries of one exchange.
         lock_wait_s: how long to wait for a port that another process uses.
         trace: record the wire in this file, ``.pcap`` or ``.ndjson``.
         needs: the commands without which there is nothing to do here.
+        limit: ends everything on this line when it is over; None for no limit.
+        read_only: refuse every request that writes, before a byte is sent.
+        modbus_map: which elements have which Modbus references; by default the standard map. ``custom`` reads
+            the PLC's own.
         note: is told what a curious user may want to know.
 
     Raises:
@@ -83,10 +152,14 @@ def connect(
     """
     codec = codec_named(protocol)
     require_commands(codec, *needs)
+    require_station(codec, station)
+    if modbus_map is not None:
+        codec = mapped(codec, STANDARD if modbus_map == "custom" else modbus_map)
     if not 0 < timeout_s < inf or retries < 0:
         raise UsageError(f"expected a timeout above 0 and retries from 0, got {timeout_s:g} and {retries}")
     line = LineSettings(baud, usual_format(protocol) if format is None else format)
     stack = ExitStack()
+    locks: list[PortLock] = []
     try:
         transport = open_line(
             target,
@@ -97,12 +170,42 @@ def connect(
             lock_wait_s=lock_wait_s,
             trace=trace,
             note=note,
+            on_lock=locks.append,
         )
-        link = Link(transport, codec, station, line, timeout_s=timeout_s, retries=retries, note=note)
+        if limit is not None:
+            transport = LimitedTransport(transport, limit)
+        link = Link(
+            transport,
+            codec,
+            station,
+            line,
+            timeout_s=timeout_s,
+            retries=retries,
+            read_only=read_only,
+            note=note,
+        )
+        for lock in locks:
+            _hand_over_doubt(lock, link, stack)
+        if modbus_map == "custom":
+            link.codec = mapped(codec, map_in_plc(link))
     except BaseException:
         stack.close()
         raise
     return Plc(link, target, stack)
+
+
+def _hand_over_doubt(lock: PortLock, link: Link, stack: ExitStack) -> None:
+    """Begin behind a fence where the one before left an answer on its way; leave word of one of our own.
+
+    A doubt that no fence took away is not handed on a second time: by then the line was listened to for as
+    long as a PLC may take, and a PLC without loopbacks (4E) is not to be locked out for ever.
+    """
+    inherited = link.hearing.doubt = lock.found_doubt
+
+    def leave() -> None:
+        lock.leaves_doubt = link.hearing.doubt and not (inherited and not link.counters.fences)
+
+    stack.callback(leave)
 
 
 def open_line(
@@ -115,6 +218,7 @@ def open_line(
     lock_wait_s: float = 10.0,
     trace: Path | None = None,
     note: Callable[[str], None] = no_note,
+    on_lock: Callable[[PortLock], object] = _to_nobody,
 ) -> Transport:
     """Open the line alone, for who asks more than one PLC on it.
 
@@ -127,19 +231,32 @@ def open_line(
         lock_wait_s: as for ``connect``.
         trace: as for ``connect``.
         note: as for ``connect``.
+        on_lock: is given the lock of a real line.
 
     Raises:
         UsageError, LineError: as ``connect``.
     """
     where = Target.parse(target, default_port=codec_named(protocol).default_tcp_port)
     data_bits = codec_named(protocol).data_bits
-    if where.kind is TargetKind.SERIAL and line.data_bits < data_bits:
+    if where.on_serial_port and data_bits is None and not where.is_url:
+        raise UsageError(
+            f"{protocol} is for networks: expected tcp://HOST, got {target!r:.80}",
+            hint="on a serial line it is modbus-rtu or modbus-ascii",
+        )
+    if where.on_serial_port and data_bits is not None and line.data_bits < data_bits:
         raise UsageError(
             f"{protocol} on a serial line: expected {data_bits} data bits, got the format {line.format}",
             hint=f"add --format {usual_format(protocol)} or {data_bits}N1, as the PLC's port is set",
         )
     transport = _open(
-        where, protocol=protocol, station=station, line=line, stack=stack, lock_wait_s=lock_wait_s, note=note
+        where,
+        protocol=protocol,
+        station=station,
+        line=line,
+        stack=stack,
+        lock_wait_s=lock_wait_s,
+        note=note,
+        on_lock=on_lock,
     )
     if trace is None:
         return transport
@@ -157,11 +274,12 @@ def _open(
     stack: ExitStack,
     lock_wait_s: float,
     note: Callable[[str], None],
+    on_lock: Callable[[PortLock], object],
 ) -> Transport:
     if where.kind is not TargetKind.SIM:
         from fatektool.transport.open import open_transport
 
-        return open_transport(where, line, stack, lock_wait_s=lock_wait_s, note=note)
+        return open_transport(where, line, stack, lock_wait_s=lock_wait_s, note=note, on_lock=on_lock)
     from os.path import realpath
     from pathlib import Path
 

@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import wraps
 from math import isnan
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import click
+from click.core import ParameterSource
 
+from fatektool.cli.inventory_file import complete_target, inventory_option, plc_named
 from fatektool.cli.output import Voice
-from fatektool.errors import UsageError
+from fatektool.errors import LineReadOnly, UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from contextlib import ExitStack
 
     from fatektool.client import Plc
+    from fatektool.inventory.entries import PlcEntry
     from fatektool.protocol.commands import Command
+    from fatektool.protocol.modbus_map import ModbusMap
     from fatektool.transport.base import Transport
+    from fatektool.transport.limit import Limit
 
 
 class Seconds(click.FloatRange):
@@ -31,6 +36,19 @@ class Seconds(click.FloatRange):
         if isnan(seconds):
             self.fail(f"{value!r} is no number of seconds", param, ctx)
         return seconds
+
+
+class Station(click.IntRange):
+    """1 to 254; 0, every PLC on the line, where ``--broadcast`` is given."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Read the number. ``--broadcast`` is eager, so that it is known by now."""
+        broadcast = None if ctx is None else ctx.params.get("broadcast")
+        if str(value).strip() != "0" or broadcast is None:
+            return super().convert(value, param, ctx)
+        if not broadcast:
+            self.fail("0 is every PLC on the line, and none answers: add --broadcast if that is meant")
+        return 0
 
 
 class Several(click.ParamType):  # type: ignore[type-arg]  # a generic in the newest click only
@@ -50,12 +68,20 @@ class Several(click.ParamType):  # type: ignore[type-arg]  # a generic in the ne
 F = TypeVar("F", bound="Callable[..., Any]")
 
 PATH = click.Path(path_type=Path)
-PROTOCOLS = ("facon", "mseries")
+PROTOCOLS = ("facon", "mseries", "modbus-rtu", "modbus-ascii", "modbus-tcp")
+_IN_INVENTORY = {
+    "station": "station",
+    "protocol": "protocol",
+    "baud": "baud",
+    "timeout": "timeout_s",
+    "retries": "retries",
+    "lock_wait": "lock_wait_s",
+}
 
 
 @dataclass(frozen=True, slots=True)
 class Connection:
-    """Where the PLC is and how to talk to it, as the options say."""
+    """Where the PLC is and how to talk to it, as the options and the inventory say."""
 
     target: str
     station: int
@@ -66,11 +92,36 @@ class Connection:
     retries: int
     lock_wait_s: float
     trace: Path | None
+    entry: PlcEntry | None = None
+    read_only: bool = False
+    modbus_map: ModbusMap | Literal["custom"] | None = None
 
-    def open(self, voice: Voice, *, needs: tuple[Command, ...] = ()) -> Plc:
-        """Open the line, if the protocol has the commands that are needed."""
+    def open(
+        self,
+        voice: Voice,
+        *,
+        needs: tuple[Command, ...] = (),
+        writes: bool = False,
+        limit: Limit | None = None,
+    ) -> Plc:
+        """Open the line to one PLC.
+
+        Args:
+            voice: is told what a curious user may want to know.
+            needs: commands that the protocol must have.
+            writes: True if something is to be written, which a read-only line refuses before it is opened.
+            limit: ends everything on this line when it is over.
+
+        Raises:
+            LineReadOnly: something is to be written to a line that may only be read.
+            UsageError: the protocol lacks what is needed.
+            LineError: it cannot be opened.
+        """
         from fatektool.connection import connect
 
+        if writes and self.read_only:
+            raise LineReadOnly(f"'{click.get_current_context().command_path}' writes")
+        wait_s = self.lock_wait_s if limit is None else min(self.lock_wait_s, limit.require_rest())
         return connect(
             self.target,
             station=self.station,
@@ -79,9 +130,12 @@ class Connection:
             format=self.format,
             timeout_s=self.timeout_s,
             retries=self.retries,
-            lock_wait_s=self.lock_wait_s,
+            lock_wait_s=wait_s,
             trace=self.trace,
             needs=needs,
+            limit=limit,
+            read_only=self.read_only,
+            modbus_map=self.modbus_map,
             note=voice.detail,
         )
 
@@ -121,7 +175,7 @@ def connection_options(function: F) -> F:
         "--format",
         "line_format",
         metavar="7E1",
-        help="Data bits, parity, stop bits.  [default: 7E1; 8E1 for mseries]",
+        help="Data bits, parity, stop bits.  [default: 7E1; 8E1 for mseries and modbus-rtu]",
     )
     return line_format(connection_options_but_format(function))
 
@@ -134,18 +188,19 @@ def connection_options_but_format(function: F) -> F:
         "--port",
         metavar="TARGET",
         envvar="FATEKTOOL_PORT",
+        shell_complete=complete_target,
         help="Where the PLC is: /dev/ttyUSB0, COM3, tcp://HOST[:500], udp://HOST[:500], a pyserial URL, "
-        "sim: (a simulated PLC) or sim:FILE.  [env: FATEKTOOL_PORT]",
+        "modem:/dev/ttyUSB0?number=0228082192, sim: (a simulated PLC), sim:FILE, "
+        "or its name in the inventory.  [env: FATEKTOOL_PORT]",
     )
-    @click.option(
-        "-s", "--station", type=click.IntRange(1, 254), default=1, show_default=True, help="Its station."
-    )
+    @inventory_option
+    @click.option("-s", "--station", type=Station(1, 254), default=1, show_default=True, help="Its station.")
     @click.option(
         "--protocol",
         type=click.Choice(PROTOCOLS),
         default="facon",
         show_default=True,
-        help="What the PLC speaks: facon (FB, FBE, FBN, FBs) or mseries (M-series).",
+        help="What the PLC speaks: facon (FB, FBE, FBN, FBs), mseries (M-series), or Modbus (FBs).",
     )
     @click.option("--baud", type=int, default=9600, show_default=True, help="Speed of the serial line.")
     @click.option(
@@ -172,6 +227,12 @@ def connection_options_but_format(function: F) -> F:
         help="How long to wait for a port that another process uses.",
     )
     @click.option("--trace", type=PATH, metavar="FILE", help="Record the wire: .pcap or .ndjson.")
+    @click.option(
+        "--read-only",
+        is_flag=True,
+        envvar="FATEKTOOL_READ_ONLY",
+        help="Refuse whatever would write to the PLC.  [env: FATEKTOOL_READ_ONLY]",
+    )
     @voice_options
     @wraps(function)
     def with_connection(
@@ -185,6 +246,8 @@ def connection_options_but_format(function: F) -> F:
         retries: int,
         lock_wait: float,
         trace: Path | None,
+        read_only: bool,
+        inventory: Path | None,
         **rest: Any,
     ) -> Any:
         if not port:
@@ -194,10 +257,48 @@ def connection_options_but_format(function: F) -> F:
         from fatektool.connection import usual_format
 
         form = usual_format(protocol) if line_format is None else line_format.upper()
-        line = Connection(port, station, protocol, baud, form, timeout, retries, lock_wait, trace)
+        line = Connection(
+            port, station, protocol, baud, form, timeout, retries, lock_wait, trace, read_only=read_only
+        )
+        entry = plc_named(port, inventory)
+        if entry is not None:
+            line = _of_inventory(line, entry, has_format=line_format is not None)
         return function(*args, connection=line, **rest)
 
     return with_connection  # type: ignore[return-value]  # as above
+
+
+def _of_inventory(line: Connection, entry: PlcEntry, *, has_format: bool) -> Connection:
+    """A PLC of the inventory; what was given as an option goes before what stands there."""
+    own = connection_of(entry)
+    source = click.get_current_context().get_parameter_source
+    given = {
+        field: getattr(line, field)
+        for option, field in _IN_INVENTORY.items()
+        if source(option) is ParameterSource.COMMANDLINE
+    }
+    if has_format or given.get("protocol", own.protocol) != own.protocol:
+        given["format"] = line.format  # that of the inventory is meant for the protocol there
+    return replace(own, trace=line.trace, read_only=line.read_only or own.read_only, **given)
+
+
+def connection_of(entry: PlcEntry) -> Connection:
+    """A PLC of the inventory, as it stands there."""
+    from fatektool.connection import usual_format
+
+    return Connection(
+        entry.target,
+        entry.station,
+        entry.protocol,
+        entry.baud,
+        entry.format or usual_format(entry.protocol),
+        entry.timeout_s,
+        entry.retries,
+        entry.lock_wait_s,
+        None,
+        entry,
+        read_only=entry.read_only,
+    )
 
 
 def yes_option(function: F) -> F:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import json
+import re
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -21,10 +22,19 @@ if TYPE_CHECKING:
     from rich.progress import TaskID
 
 
+_OBEYED = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]")
+"""What a terminal obeys: control characters but for tab and new line, and those of direction."""
+
+
+def visible(text: str) -> str:
+    """Text from a file, a PLC or a name: what a terminal would obey stands there as a code."""
+    return _OBEYED.sub(lambda found: ascii(found[0])[1:-1], text)
+
+
 def tell(text: str) -> None:
     """Print a line on stderr. That nobody hears it any more is no reason to leave a PLC half written."""
     with contextlib.suppress(OSError):
-        click.echo(text, err=True)
+        click.echo(visible(text), err=True)
 
 
 def print_json(document: dict[str, Any]) -> None:
@@ -40,11 +50,13 @@ class Voice:
         json: one JSON document on stdout instead of words.
         quiet: nothing on stderr but errors.
         verbose: more on stderr.
+        name: stands before what is told of one PLC among many.
     """
 
     json: bool = False
     quiet: bool = False
     verbose: bool = False
+    name: str = ""
 
     def say(self, text: str) -> None:
         """Tell the user something, on stderr."""
@@ -54,11 +66,15 @@ class Voice:
     def detail(self, text: str) -> None:
         """Tell a curious user something, on stderr."""
         if self.verbose:
-            tell(text)
+            tell(self.name + text)
 
     def warn(self, text: str) -> None:
         """Warn the user, on stderr, quiet or not."""
-        tell(f"warning: {text}")
+        tell(f"warning: {self.name}{text}")
+
+    def of(self, name: str) -> Voice:
+        """The same voice where many PLCs are talked of: this one's name comes first."""
+        return replace(self, name=f"{name}: ")
 
     def show(self, document: dict[str, Any], lines: Iterable[str]) -> None:
         """Print the document or the lines, on stdout."""
@@ -66,7 +82,7 @@ class Voice:
             print_json(document)
         else:
             for line in lines:
-                click.echo(line)
+                click.echo(visible(line))
 
     def confirm(self, question: str, *, yes: bool, option: str = "--yes") -> bool:
         """Ask, unless the option answers; a question that cannot be put is a refusal.
@@ -82,7 +98,7 @@ class Voice:
                 hint=f"add {option}",
             )
         while True:
-            click.echo(f"{question} [y/N]: ", nl=False, err=True)
+            click.echo(f"{visible(question)} [y/N]: ", nl=False, err=True)
             answer = sys.stdin.readline()
             if not answer:  # ^D, or the terminal is gone
                 tell("")
@@ -159,9 +175,9 @@ class Bar:
     def print(self, text: str) -> None:
         """Print a line of data on stdout, above the bar if both are on one terminal."""
         if self._shown and sys.stdout.isatty():
-            self._rich.console.print(text, markup=False, highlight=False, soft_wrap=True)
+            self._rich.console.print(visible(text), markup=False, highlight=False, soft_wrap=True)
         else:
-            click.echo(text)
+            click.echo(visible(text))
             sys.stdout.flush()
 
     def pause(self) -> None:

@@ -1,0 +1,193 @@
+"""``--prometheus``, ``--on-change``, ``--on-failure``: who is told what became of the PLCs."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+from functools import wraps
+from typing import TYPE_CHECKING, Any, Final, TypeVar
+
+import click
+
+from fatektool.cli.options import PATH
+from fatektool.errors import UsageError
+from fatektool.jobs.alarms import TIME_LIMIT_S, Event, parse_command, run_command
+from fatektool.jobs.prometheus import Sample, exposition, sample, successes
+from fatektool.jobs.times import utc
+from fatektool.program.files import read_bounded, require_place, write_whole
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from fatektool.cli.fleet_jobs import Done
+    from fatektool.cli.output import Voice
+
+F = TypeVar("F", bound="Callable[..., Any]")
+
+_MAX_FILE: Final = 64 << 20
+_MODE: Final = 0o644  # the collector is another user
+_MOST_HANGS: Final = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """What became of one PLC, for those who are told.
+
+    Attributes:
+        name: the PLC's.
+        target: where it is.
+        station: 1 to 254.
+        exit_code: of its job.
+        words: the same on one line.
+        duration_s: how long it took.
+        up: whether it answered; None if it was not asked.
+        done: what its job gave; None if it failed.
+    """
+
+    name: str
+    target: str
+    station: int
+    exit_code: int
+    words: str
+    duration_s: float
+    up: bool | None
+    done: Done | None
+
+
+@dataclass(slots=True)
+class Alarms:
+    """Who is told, and of what.
+
+    Attributes:
+        prometheus: the file for the textfile collector.
+        on_change: the command for another program.
+        on_failure: the command for what did not end well.
+    """
+
+    prometheus: Path | None
+    on_change: tuple[str, ...] | None
+    on_failure: tuple[str, ...] | None
+    _told: list[tuple[str, Told]] = field(init=False, default_factory=list)
+    _hangs: int = field(init=False, default=0)
+
+    def tell(self, job: str, told: Told, voice: Voice) -> None:
+        """One PLC has ended: start the commands that it calls for."""
+        if self.prometheus is not None:
+            self._told.append((job, told))
+        if self.on_change is not None and told.done is not None and told.done.changed:
+            self._run(self.on_change, "change", job, told, voice)
+        if self.on_failure is not None and told.exit_code:
+            self._run(self.on_failure, "failure", job, told, voice)
+
+    def write(self, known: set[str]) -> None:
+        """Write the Prometheus file, whole or not at all.
+
+        Args:
+            known: the PLCs whose successes of former runs are kept.
+
+        Raises:
+            UsageError: the file cannot be written.
+            DataError: the disk is full or broken.
+        """
+        if self.prometheus is None:
+            return
+        former: dict[tuple[str, str], float] = {}
+        if self.prometheus.exists():
+            text = read_bounded(self.prometheus, _MAX_FILE).decode(errors="replace")
+            former = {key: when for key, when in successes(text).items() if key[0] in known}
+        data = exposition(_samples(self._told, former, time.time())).encode(errors="backslashreplace")
+        write_whole(self.prometheus, data, overwrite=True, mode=_MODE)
+
+    def _run(self, command: tuple[str, ...], event: str, job: str, told: Told, voice: Voice) -> None:
+        if self._hangs >= _MOST_HANGS:
+            voice.warn(f"{told.name}: {command[0]} is not started, as it hung {_MOST_HANGS} times before")
+            return
+        file = "" if told.done is None or told.done.file is None else str(told.done.file)
+        happened = Event(
+            told.name, told.target, told.station, job, event, told.exit_code, told.words, file, utc()
+        )
+        began = time.monotonic()
+        fault = run_command(command, happened)
+        if fault is not None:
+            voice.warn(f"--on-{event} for {told.name}: {fault}")
+        self._hangs += time.monotonic() - began >= TIME_LIMIT_S
+
+
+def _samples(
+    told: list[tuple[str, Told]], former: dict[tuple[str, str], float], now: float
+) -> Iterator[Sample]:
+    for job, each in told:
+        of_plc, of_job = {"plc": each.name}, {"plc": each.name, "job": job}
+        place = of_plc | {"target": each.target, "station": each.station}
+        yield sample("fatek_plc_info", 1, place)
+        if each.up is not None:
+            yield sample("fatek_up", each.up, of_plc)
+        yield sample("fatek_exit_code", each.exit_code, of_job)
+        yield sample("fatek_last_run_timestamp_seconds", int(now), of_job)
+        yield sample("fatek_duration_seconds", round(each.duration_s, 3), of_job)
+        if each.exit_code == 0:
+            former[each.name, job] = int(now)
+        done = each.done
+        if done is not None and done.changed is not None:
+            yield sample("fatek_program_changed", done.changed, of_job)
+        if done is not None and done.flags is not None:
+            for flag in (
+                "running",
+                "battery_low",
+                "ladder_checksum_error",
+                "watchdog_timeout",
+                "emergency_stop",
+            ):
+                yield sample(f"fatek_{flag}", getattr(done.flags, flag), of_plc)
+    for (name, job), when in sorted(former.items()):
+        yield sample("fatek_last_success_timestamp_seconds", when, {"plc": name, "job": job})
+
+
+def alarm_options(*, changes: bool) -> Callable[[F], F]:
+    """The options; the command gets ``alarms``.
+
+    Args:
+        changes: False for a job that compares nothing, and has no ``--on-change``.
+    """
+
+    def decorated(function: F) -> F:
+        @click.option(
+            "--prometheus",
+            type=PATH,
+            metavar="FILE.prom",
+            help="Also write the state of all for the textfile collector of the node exporter.",
+        )
+        @click.option(
+            "--on-failure",
+            metavar="CMD",
+            help="Start CMD for each PLC that is not well; FATEK_NAME, FATEK_MESSAGE and more tell it what.",
+        )
+        @wraps(function)
+        def with_alarms(
+            *args: Any,
+            prometheus: Path | None,
+            on_failure: str | None,
+            on_change: str | None = None,
+            **rest: Any,
+        ) -> Any:
+            alarms = Alarms(
+                prometheus,
+                None if on_change is None else parse_command(on_change, "--on-change"),
+                None if on_failure is None else parse_command(on_failure, "--on-failure"),
+            )
+            if prometheus is not None:
+                if prometheus.suffix != ".prom":
+                    raise UsageError(f"--prometheus {prometheus}: expected a name that ends in .prom")
+                require_place(prometheus, overwrite=True)
+            return function(*args, alarms=alarms, **rest)
+
+        if changes:
+            with_alarms = click.option(
+                "--on-change",
+                metavar="CMD",
+                help="Start CMD for each PLC whose program is another than before.",
+            )(with_alarms)
+        return with_alarms  # type: ignore[return-value]  # click's decorators hand back what they get
+
+    return decorated

@@ -1,0 +1,317 @@
+"""From TOML to PLCs, with all that is wrong named by its line.
+
+A value of ``[plc.NAME]`` goes before that of ``[defaults]``, and this before the built-in one.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from fatektool.connection import CODECS, usual_format
+from fatektool.errors import DataError, UsageError
+from fatektool.inventory.find import EXPECTATIONS
+from fatektool.inventory.lines import key_lines, line_of
+from fatektool.transport.base import LineSettings
+from fatektool.transport.target import Target, TargetKind
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from collections.abc import Set as AbstractSet
+
+    from fatektool.inventory.lines import KeyPath
+
+_NAME: Final = re.compile(r"\w[\w.-]{0,63}")
+_DEVICE: Final = re.compile(r"(?:COM|LPT)\d+|CON|PRN|AUX|NUL", re.ASCII | re.IGNORECASE)
+
+
+@dataclass(frozen=True, slots=True)
+class PlcEntry:
+    """One PLC of the inventory; defaults are filled in.
+
+    Attributes:
+        name: what it is called.
+        target: as for ``connect``; a path in it is relative to the present folder, or absolute.
+        station: 1 to 254.
+        protocol: what it speaks.
+        baud: speed of the serial line.
+        format: data bits, parity, stop bits; None for the protocol's own.
+        timeout_s: the PLC's time to answer, beside wire time.
+        retries: further tries of one exchange.
+        lock_wait_s: how long to wait for a port that another process uses.
+        tags: words by which PLCs are picked.
+        spec: the snapshot specification; None if there is none.
+        reference: a backup of the program that ought to be in it; None if there is none.
+        expect: ``run``, ``stop`` or ``any``: the mode that it ought to be in.
+        read_only: refuse whatever would write to it.
+    """
+
+    name: str
+    target: str
+    station: int = 1
+    protocol: str = "facon"
+    baud: int = 9600
+    format: str | None = None
+    timeout_s: float = 0.5
+    retries: int = 3
+    lock_wait_s: float = 10.0
+    tags: tuple[str, ...] = ()
+    spec: Path | None = None
+    reference: Path | None = None
+    expect: str = "run"
+    read_only: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """Something in the file that does not hold.
+
+    Attributes:
+        line: where, from 1; None for the file as a whole.
+        message: what.
+    """
+
+    line: int | None
+    message: str
+
+    def __str__(self) -> str:
+        return f"line {self.line}: {self.message}" if self.line else self.message
+
+
+@dataclass(slots=True)
+class Inventory:
+    """What a file says.
+
+    Attributes:
+        file: the file.
+        plcs: the PLCs by name, in the file's order; those without faults.
+        faults: all that does not hold, in the file's order.
+    """
+
+    file: Path
+    plcs: dict[str, PlcEntry] = field(default_factory=dict)
+    faults: list[Fault] = field(default_factory=list)
+
+    def require_whole(self) -> None:
+        """Raise DataError if there is a fault; all of them are in its details."""
+        if not self.faults:
+            return
+        more = f" (and {len(self.faults) - 1} more)" if len(self.faults) > 1 else ""
+        raise DataError(
+            f"{self.file}: {self.faults[0]}{more}",
+            hint=f"see 'fatektool inventory check --inventory {self.file}'",
+            file=str(self.file),
+            faults=[str(fault) for fault in self.faults],
+        )
+
+    def named(self, name: str) -> PlcEntry:
+        """The PLC of this name.
+
+        Raises:
+            UsageError: there is none; says which are near.
+        """
+        if name in self.plcs:
+            return self.plcs[name]
+        near = get_close_matches(name, self.plcs, 3, 0.6)
+        meant = f"; did you mean {' or '.join(near)}?" if near else ""
+        raise UsageError(
+            f"no PLC {name!r} in the inventory {self.file}{meant}", hint="see 'fatektool inventory list'"
+        )
+
+
+def parse_inventory(data: bytes, file: Path) -> Inventory:
+    """Read an inventory; never raises: what does not hold is in its ``faults``.
+
+    Args:
+        data: the file's bytes.
+        file: the file, for the paths in it.
+    """
+    import tomllib
+
+    try:
+        text = data.decode("utf-8-sig").replace("\r\n", "\n")
+        document = tomllib.loads(text)
+        lines = key_lines(text)
+    except (ValueError, RecursionError) as error:  # UnicodeDecodeError and TOMLDecodeError among them
+        place = re.search(r" \(at line (\d+), column \d+\)$", str(error))
+        told = str(error)[: place.start()] if place else str(error)
+        return Inventory(file, faults=[Fault(int(place[1]) if place else None, f"no TOML: {told}")])
+    return _Reader(Inventory(file), lines).read(document)
+
+
+class _Reader:
+    """Takes a document apart, and notes what does not hold."""
+
+    def __init__(self, inventory: Inventory, lines: dict[KeyPath, int]) -> None:
+        self._found = inventory
+        self._lines = lines
+
+    def read(self, document: dict[str, Any]) -> Inventory:
+        for key in document:
+            if key not in {"defaults", "plc"}:
+                self._fault("expected [defaults] and [plc.NAME] tables", key, got=key)
+        defaults = self._table(document.get("defaults", {}), ("defaults",), _CHECKS.keys() - {"reference"})
+        plcs = document.get("plc", {})
+        if not isinstance(plcs, dict):
+            self._fault("plc: expected [plc.NAME] tables", "plc")
+            plcs = {}
+        for name, table in plcs.items():
+            self._plc(name, table, defaults)
+        self._found.faults.sort(key=lambda fault: fault.line or 0)
+        return self._found
+
+    def _plc(self, name: str, table: object, defaults: dict[str, Any]) -> None:
+        faults = len(self._found.faults)
+        if not _NAME.fullmatch(name) or _DEVICE.fullmatch(name.partition(".")[0]) or len(name.encode()) > 250:
+            self._fault(
+                f"a PLC's name: expected up to 64 letters, digits, '_', '-' and '.', and no port's name, "
+                f"got {name!r}",
+                "plc",
+                name,
+            )
+        twin = next((other for other in self._found.plcs if other.lower() == name.lower()), None)
+        if twin is not None:
+            self._fault(f"{name!r} and {twin!r} would share files: expected another name", "plc", name)
+        values = defaults | self._table(table, ("plc", name), _CHECKS.keys())
+        if "target" not in values and isinstance(table, dict) and "target" not in table:
+            self._fault(f'{name}: expected target = "tcp://HOST" or another', "plc", name)
+        protocol = values.get("protocol", "facon")
+        if len(self._found.faults) == faults:
+            try:
+                Target.parse(values["target"], default_port=CODECS[protocol].default_tcp_port)
+            except UsageError as error:
+                self._fault(f"{name}: {error}", "plc", name, "target")
+                return
+            form = values.get("format")
+            if form is None:
+                values["format"] = usual_format(protocol)
+            self._found.plcs[name] = PlcEntry(name, **values)
+
+    def _table(self, table: object, path: tuple[str, ...], allowed: AbstractSet[str]) -> dict[str, Any]:
+        """The values of a table that hold, as a PLC has them."""
+        if not isinstance(table, dict):
+            self._fault(f"expected a table [{'.'.join(path)}]", *path)
+            return {}
+        found: dict[str, Any] = {}
+        for key, value in table.items():
+            if key not in allowed:
+                near = get_close_matches(key, allowed, 1, 0.6)
+                known = (
+                    f"did you mean {near[0]}?" if near else f"expected one of {', '.join(sorted(allowed))}"
+                )
+                self._fault(f"{'.'.join(path)}: unknown key {key!r}: {known}", *path, key)
+                continue
+            words, take = _CHECKS[key]
+            try:
+                found[key] = take(value, self._found.file.parent)
+            except (ValueError, TypeError, UsageError) as error:
+                told = error.message if isinstance(error, UsageError) else f"{key}: expected {words}"
+                got = "" if isinstance(error, UsageError) else f", got {_short(value)}"
+                self._fault(f"{'.'.join(path)}: {told}{got}", *path, key)
+        return found
+
+    def _fault(self, message: str, *path: str, got: str = "") -> None:
+        told = f"{message}, got {got!r}" if got else message
+        self._found.faults.append(Fault(line_of(self._lines, *path), told))
+
+
+# --- what a value may be: each taker gives it as a PLC has it, or raises ValueError or UsageError ----------
+
+
+def _text(value: object, _: Path) -> str:
+    if not isinstance(value, str) or not value or not value.isprintable():
+        raise ValueError
+    return value
+
+
+def _target(value: object, folder: Path) -> str:
+    """A target, its path relative to the file's folder."""
+    target = Target.parse(_text(value, folder))
+    if target.kind is TargetKind.SIM and target.path:
+        return f"sim:{folder / target.path}"
+    if target.kind is TargetKind.SERIAL and not target.is_url and "/" in target.path:
+        return str(folder / target.path)
+    return target.text
+
+
+def _path(value: object, folder: Path) -> Path:
+    try:
+        return folder / Path(_text(value, folder)).expanduser()
+    except RuntimeError as error:  # ~somebody, whom this computer does not know
+        raise ValueError from error
+
+
+def _tags(value: object, folder: Path) -> tuple[str, ...]:
+    return tuple(_text(tag, folder) for tag in ([value] if isinstance(value, str) else _list(value)))
+
+
+def _list(value: object) -> list[object]:
+    if not isinstance(value, list):
+        raise TypeError
+    return value
+
+
+def _whole(first: int, last: int) -> Callable[[object, Path], int]:
+    def take(value: object, _: Path) -> int:
+        if type(value) is not int or not first <= value <= last:
+            raise ValueError
+        return value
+
+    return take
+
+
+def _seconds(first: float, last: float) -> Callable[[object, Path], float]:
+    def take(value: object, _: Path) -> float:
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        if not number or not first <= value <= last:  # type: ignore[operator]  # a number, as was looked at
+            raise ValueError
+        return float(value)  # type: ignore[arg-type]  # the same
+
+    return take
+
+
+def _one_of(words: tuple[str, ...]) -> Callable[[object, Path], str]:
+    def take(value: object, _: Path) -> str:
+        if value not in words:
+            raise ValueError
+        return str(value)
+
+    return take
+
+
+def _flag(value: object, _: Path) -> bool:
+    if not isinstance(value, bool):
+        raise TypeError
+    return value
+
+
+def _format(value: object, folder: Path) -> str:
+    return LineSettings(format=_text(value, folder).upper()).format
+
+
+_PROTOCOLS: Final = tuple(CODECS)
+_CHECKS: Final[dict[str, tuple[str, Callable[[object, Path], Any]]]] = {
+    "target": ("a text such as tcp://192.168.2.3 or /dev/ttyUSB0", _target),
+    "station": ("a whole number of 1 to 254", _whole(1, 254)),
+    "protocol": (f"one of {', '.join(_PROTOCOLS)}", _one_of(_PROTOCOLS)),
+    "baud": ("a whole number of 50 to 4000000", _whole(50, 4_000_000)),
+    "format": ("a text such as 7E1", _format),
+    "timeout_s": ("seconds, 0.001 to 3600", _seconds(0.001, 3600)),
+    "retries": ("a whole number of 0 to 1000", _whole(0, 1000)),
+    "lock_wait_s": ("seconds, 0 to 86400", _seconds(0, 86400)),
+    "tags": ("a list of texts", _tags),
+    "spec": ("the name of a file", _path),
+    "reference": ("the name of a file", _path),
+    "read_only": ("true or false", _flag),
+    "expect": (f"one of {', '.join(EXPECTATIONS)}", _one_of(EXPECTATIONS)),
+}
+
+
+def _short(value: object) -> str:
+    try:
+        return f"{value!r:.60}"
+    except (ValueError, RecursionError):  # a whole number of thousands of digits
+        return "a very long number"

@@ -1,0 +1,86 @@
+"""At which line of a TOML document a key stands: tomllib does not tell.
+
+The document is one that tomllib has read, so only what keeps statements apart must be known: strings,
+comments, brackets, line ends.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from typing import TYPE_CHECKING, Any, Final
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+_TOKEN: Final = re.compile(
+    r'"""(?:\\.|[^\\])*?"{3,5}'  # strings of many lines
+    r"|'''.*?'{3,5}"
+    r'|"(?:\\.|[^"\\\n])*"'  # strings of one line
+    r"|'[^'\n]*'"
+    r"|#[^\n]*|\n|[\[\]{}]|[^\"'#\n\[\]{}]+",
+    re.DOTALL,
+)
+_KEY: Final = re.compile(r"""(?:"(?:\\.|[^"\\])*"|'[^']*'|[^="'])+(?==)""", re.DOTALL)
+_HEADER: Final = re.compile(r"^\[+[ \t]*|[ \t]*\]+$")
+
+KeyPath = tuple[str, ...]
+
+
+def key_lines(text: str) -> dict[KeyPath, int]:
+    """The line of each table and key, by its whole path: ``("plc", "press", "target")``.
+
+    Keys within an inline table are not among them.
+
+    Args:
+        text: a document that tomllib reads.
+    """
+    found: dict[KeyPath, int] = {}
+    table: KeyPath = ()
+    for line, statement in _statements(text):
+        key = _KEY.match(statement)
+        if statement.startswith("["):
+            table = path = _path(_HEADER.sub("", statement))
+        elif key is not None:
+            path = table + _path(key[0])
+        else:
+            continue
+        for end in range(1, len(path) + 1):  # a.b = 1 begins the table a, too
+            found.setdefault(path[:end], line)
+    return found
+
+
+def line_of(lines: dict[KeyPath, int], *path: str) -> int | None:
+    """The line of a key, or of the nearest table around it; None if none of them stands anywhere."""
+    while path:
+        if path in lines:
+            return lines[path]
+        path = path[:-1]
+    return None
+
+
+def _statements(text: str) -> Iterator[tuple[int, str]]:
+    """Each table header and each key with its value: the line it begins at, and its text without comments."""
+    depth, line, began, parts = 0, 1, 1, list[str]()
+    for piece in _TOKEN.findall(text + "\n"):
+        if piece == "\n" and depth == 0:
+            statement = "".join(parts).strip()
+            if statement:
+                yield began, statement
+            parts = []
+        elif not piece.startswith("#"):
+            if not "".join(parts).strip():
+                began = line
+            depth += {"[": 1, "{": 1, "]": -1, "}": -1}.get(piece, 0)
+            parts.append(piece)
+        line += piece.count("\n")
+
+
+def _path(key: str) -> KeyPath:
+    """A dotted key, taken apart by the one who knows how."""
+    found: Any = tomllib.loads(f"{key} = 0")
+    path: KeyPath = ()
+    while isinstance(found, dict):
+        ((name, found),) = found.items()
+        path += (name,)
+    return path

@@ -1,0 +1,113 @@
+"""A command of the user's own when something happened: it gets the event in its environment, never on a line.
+
+The command is started without a shell, so nothing in a PLC's name or in a message is read as a command. It
+may take half a minute; then it is ended, and all that it started with it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import shlex
+import signal
+import subprocess
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from fatektool.errors import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+TIME_LIMIT_S: Final = 30.0
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """What happened.
+
+    Attributes:
+        name: the PLC's.
+        target: where it is.
+        station: 1 to 254.
+        job: the command: ``backup``, ``check``.
+        event: ``change`` or ``failure``.
+        exit_code: of the job.
+        message: in words.
+        file: that was written or compared with; empty if there is none.
+        time: UTC, RFC 3339.
+    """
+
+    name: str
+    target: str
+    station: int
+    job: str
+    event: str
+    exit_code: int
+    message: str
+    file: str
+    time: str
+
+    def environment(self) -> dict[str, str]:
+        """``FATEK_NAME``, ``FATEK_EVENT``, …: texts on one line, which every system takes."""
+        return {
+            f"FATEK_{field.upper()}": " ".join(str(getattr(self, field)).replace("\0", " ").split())
+            for field in self.__slots__
+        }
+
+
+def parse_command(text: str, option: str) -> tuple[str, ...]:
+    """Take a command apart, as a shell would without doing anything else.
+
+    Args:
+        text: ``mail-alarm --to 'the team'``.
+        option: where it stands, for messages.
+
+    Raises:
+        UsageError: a quotation without an end, or nothing.
+    """
+    try:
+        words = tuple(shlex.split(text))
+    except ValueError as error:
+        raise UsageError(f"{option} {text!r}: {error}") from error
+    if not words or not words[0]:
+        raise UsageError(f"{option}: expected a command, got {text!r}")
+    return words
+
+
+def run_command(command: Sequence[str], event: Event, *, time_limit_s: float = TIME_LIMIT_S) -> str | None:
+    """Start a command and wait for its end.
+
+    What it prints goes to standard error, as standard output is for data.
+
+    Returns:
+        What went wrong, in words; None if nothing did.
+    """
+    try:
+        process = subprocess.Popen(  # noqa: S603  # the user's own command; what is not his is in its environment
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=2,
+            env=os.environ | event.environment(),
+            start_new_session=os.name != "nt",
+        )
+    except (OSError, ValueError) as error:
+        return f"cannot start {command[0]}: {getattr(error, 'strerror', None) or error}"
+    try:
+        code = process.wait(time_limit_s)
+    except subprocess.TimeoutExpired:
+        _end(process)
+        return f"{command[0]} did not end within {time_limit_s:g} s, and was stopped"
+    except BaseException:  # an interrupt
+        _end(process)
+        raise
+    return f"{command[0]} ended with exit code {code}" if code else None
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    with contextlib.suppress(OSError):
+        if os.name == "nt":
+            process.kill()
+        else:
+            os.killpg(process.pid, signal.SIGKILL)
+    process.wait()

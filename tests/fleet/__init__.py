@@ -1,0 +1,1 @@
+"""Many PLCs: fleet, check, alarms."""

@@ -1,0 +1,1 @@
+"""The inventory: the file that names the PLCs."""
