@@ -10,8 +10,9 @@ taken as proven only behind a fence:
   it was, the one before, and the last that differs from the one behind it. These are read again.
 - At the end comes a fence, with the same test if it does not come down cleanly.
 
-On a clean line all this costs one loopback. What it cannot see is an answer that came twice and another one
-lost right behind it, which leaves no trace: a second pass is what finds that.
+On a clean line all this costs one fence, and nothing where answers bear the number of their request. What it
+cannot see is an answer that came twice and another one lost right behind it, which leaves no trace: a second
+pass is what finds that.
 """
 
 from __future__ import annotations
@@ -98,7 +99,7 @@ class _Batch(Generic[A]):
         proven = link.closing_fence()
         if link.suspicions != suspicions:
             self._ask_unproven_again()
-        elif proven and link.counters.trouble != trouble:
+        elif proven and link.signs[1] != trouble:
             self._check_unproven([])
 
     def _check_unproven(self, doubtful: list[int]) -> None:
@@ -126,5 +127,5 @@ class _Batch(Generic[A]):
         self._unproven = []
 
     def _ask_behind_fence(self, place: int) -> A:
-        self._link.fence()
+        self._link.fence(self._requests[place])
         return self._link.ask(self._requests[place])

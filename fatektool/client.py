@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from typing import Self
 
     from fatektool.link import Link
+    from fatektool.protocol.commands import Request
     from fatektool.protocol.elements import Element
     from fatektool.protocol.status import BriefStatus, DetailedStatus
 
@@ -173,6 +174,13 @@ class Plc:
         self.link.ask(WriteMixed(tuple(items)))
 
     # --- line and program -------------------------------------------------------------------------
+
+    def broadcast(self, request: Request[None]) -> None:
+        """A write to every PLC on the line. None answers: wait for as long as one may take to do it."""
+        link = self.link
+        link.broadcast(request)
+        wire_s = link.codec.request_bytes(request) * link.byte_time_s
+        link.hearing.listen_until(link.transport.clock() + wire_s + link.timeout_s)
 
     def loopback(self, data: bytes) -> bytes:
         """4E: what the PLC sends back, which is what it was sent."""

@@ -5,8 +5,12 @@ time-out the late answer to page 5 would pass for page 6. What keeps them apart:
 
 - Input is dropped before each request.
 - After any doubt (a time-out, garbage, an answer that nobody asked for) a **fence** is put up before the next
-  request: a loopback (4E) with a fresh nonce. All that comes before its echo is dropped, and only the exact
-  nonce brings the fence down: an older fence's echo does not.
+  request: a question whose answer no other question has had, which is the codec's to find. FACON has the
+  loopback (4E), which gives back a fresh nonce. All that comes before that answer is dropped, and only the
+  exact nonce brings the fence down: an older fence's echo does not. A codec that has no such question left
+  leaves it to silence: for as long as a PLC may take, nothing must be heard.
+- Where answers repeat a number of their request (``Codec.numbers``), that tells them apart, and no fence is
+  needed.
 - A two-wire line may echo every byte. The echo of most requests can be told from any answer by its content;
   that of 4E, STOP and RUN cannot. So before the first of those it is learned, from a request of the former
   kind, whether this line echoes; from then on the first copy is the echo and the second the answer.
@@ -23,20 +27,21 @@ answers are seen to come late gets twice that time, up to four times; one that i
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from fatektool.errors import (
     FrameError,
     LineError,
+    LineReadOnly,
     NoAnswer,
     PlcRefused,
     TransportClosed,
     TransportError,
     TransportTimeout,
-    UsageError,
 )
 from fatektool.hearing import Hearing
-from fatektool.protocol.commands import Command, Loopback, ReadBriefStatus
+from fatektool.protocol.codec import require_station
+from fatektool.protocol.commands import Command, Loopback
 from fatektool.protocol.read_back import read_back
 from fatektool.silence import no_answer
 from fatektool.transport.base import no_note
@@ -52,6 +57,21 @@ A = TypeVar("A")
 
 _READ_BYTES = 4096
 _SILENT_TRIES_BEFORE_RENEWAL = 2
+_LEAST_QUIET_S = 0.00175
+"""Above 19200 baud a silence between frames grows no shorter (Modbus over serial line, section 2.5.1.1)."""
+
+
+class Sent(NamedTuple):
+    """A request as it goes out, and what its answer must bear."""
+
+    raw: bytes
+    station: int
+    code: int
+    number: int
+
+    def answered_by(self, frame: Frame) -> bool:
+        """True if the frame may be its answer, as far as station, command and number tell."""
+        return (frame.station, frame.command, frame.number) == (self.station, self.code, self.number)
 
 
 class Link:
@@ -60,11 +80,12 @@ class Link:
     Args:
         transport: the medium, open.
         codec: the protocol.
-        station: 1 to 254.
+        station: 1 to the codec's last.
         line: speed and format, for wire times; over TCP and UDP that of the line behind the gateway.
         timeout_s: the PLC's time to answer, beside wire time.
         retries: further tries of one exchange.
         nonces: gives the fences' nonces, never the same twice; for tests.
+        read_only: refuse every request that writes, before a byte is sent.
         note: is told what a curious user may want to know.
     """
 
@@ -78,12 +99,10 @@ class Link:
         timeout_s: float = 0.5,
         retries: int = 3,
         nonces: Callable[[], bytes] = lambda: os.urandom(4).hex().upper().encode(),
+        read_only: bool = False,
         note: Callable[[str], None] = no_note,
     ) -> None:
-        if not 1 <= station <= 254:
-            raise UsageError(
-                f"station: expected 1 to 254, got {station}", hint="0 is broadcast: no PLC answers it"
-            )
+        require_station(codec, station)
         self.transport = transport
         self.codec = codec
         self.station = station
@@ -93,11 +112,19 @@ class Link:
         self.counters = self.hearing.counters
         self.line = line
         self.byte_time_s = line.byte_time_s
+        self.read_only = read_only
         self._nonces = nonces
         self._note = note
         self.echoes: bool | None = None
         self._silent_tries = 0
         self.answered: set[int] = set()  # commands
+        self._asked: set[bytes] = set()  # the shapes of what was asked since the last fence
+        self._number = 0
+        self._fence_command: int = Command.LOOPBACK
+        # A gateway keeps the silence before frames itself.
+        quiet = codec.quiet_chars if transport.line is not None else 0.0
+        self._quiet_s = max(quiet * self.byte_time_s, _LEAST_QUIET_S) if quiet else 0.0
+        self._quiet_from = transport.clock()
 
     # --- what others call -------------------------------------------------------------------------
 
@@ -107,14 +134,16 @@ class Link:
         Raises:
             NoAnswer: no try found an answer to trust.
             PlcRefused: the answer is an error code.
+            LineReadOnly: it writes, and the line may only be read.
         """
+        self.require_leave(request)
         failure: LineError | None = None
         fences = self.counters.fences
         for _ in range(self.retries + 1):
             self.hearing.drop_input()
             if self.hearing.doubt:
                 try:
-                    self.fence()
+                    self.fence(request)
                 except LineError as error:  # the fence stays up: further tries would be in vain
                     closed = failure if isinstance(failure, TransportClosed) else error
                     raise self._silence(request, closed) from error
@@ -130,37 +159,81 @@ class Link:
 
     @property
     def suspicions(self) -> int:
-        """How often something came that may have been an answer gone astray."""
-        return self.hearing.suspicions
+        """How often something came that may have been an answer gone astray; numbered ones never do."""
+        return 0 if self._numbered else self.hearing.suspicions
 
     @property
     def signs(self) -> tuple[int, int, int]:
         """Suspicions, trouble and fences so far: the same twice means that nothing was out of order."""
         counters = self.counters
-        return self.suspicions, counters.trouble, counters.fences
+        return (0, 0, 0) if self._numbered else (self.suspicions, counters.trouble, counters.fences)
 
-    def fence(self) -> None:
+    @property
+    def _numbered(self) -> bool:
+        return self.codec.numbers > 1
+
+    def fence(self, before: Request[Any] | None = None) -> None:
         """Make sure that no answer to an earlier request can come any more.
 
+        Args:
+            before: what is asked next, if that is known: the fence's answer must not pass for its either.
+
         Raises:
-            NoAnswer: the PLC does not answer the loopback.
+            NoAnswer: the PLC does not answer it.
             PlcRefused: it refuses it.
         """
-        failure: LineError | None = None
-        nonce = Loopback(b"")
+        if self._numbered:
+            self.hearing.doubt = False  # what is owed may still come, and tells that this PLC is slow
+            return
+        failure: LineError | PlcRefused | None = None
+        if before is not None:
+            self._asked.add(self.codec.shape(before))
+        fence = self.codec.probe
         for _ in range(self.retries + 1):
-            nonce = Loopback(self._nonces())
+            found = self.codec.fence(self._nonces(), self._asked)
+            if found is None:
+                self._hear_silence()
+                return
+            fence = found
+            self._fence_command = fence.command
             try:
-                if self.echoes is None and self.codec.echo_may_pass(nonce):
+                if self.echoes is None and self.codec.echo_may_pass(fence):
                     self.learn_echo()
-                self.try_once(nonce)
+                self.try_once(fence)
             except (TransportError, FrameError) as error:
                 failure = error
                 continue
+            except PlcRefused as error:
+                if isinstance(fence, Loopback):
+                    raise
+                self.hearing.doubt = True
+                failure = error  # of a question before: an error code does not name its question either
+                continue
             self.hearing.fenced()
             self.counters.fences += 1
+            self._asked = {self.codec.shape(fence)}
             return
-        raise self._silence(nonce, failure)
+        if isinstance(failure, PlcRefused):
+            raise failure
+        raise self._silence(fence, failure)
+
+    def _hear_silence(self) -> None:
+        """Wait until nothing comes for as long as a PLC may take.
+
+        Raises:
+            LineError: the line is never silent.
+        """
+        probe = self.codec.probe
+        wire_s = (self.codec.request_bytes(probe) + self.codec.answer_bytes(probe)) * self.byte_time_s
+        for _ in range(self.retries + 1):
+            heard = self.counters.bytes_heard
+            wait_s = wire_s + self.timeout_s * self.hearing.patience
+            self.hearing.listen_until(self.transport.clock() + wait_s)
+            if self.counters.bytes_heard == heard:
+                self.hearing.fenced()
+                self._asked.clear()
+                return
+        raise self._silence(probe, None)
 
     def closing_fence(self) -> bool:
         """A fence behind the last of many requests; True if it proves their answers.
@@ -173,7 +246,7 @@ class Link:
         try:
             self.fence()
         except (NoAnswer, PlcRefused):
-            if doubt or Command.LOOPBACK in self.answered:
+            if doubt or self._fence_command in self.answered:
                 raise
             self._note("this PLC answers no loopback (4E): a late answer to an earlier request could pass")
             self.hearing.fenced()
@@ -181,8 +254,22 @@ class Link:
         return True
 
     def broadcast(self, request: Request[None]) -> None:
-        """Send a request to every PLC on the line (station 0). Nobody answers."""
+        """Send a request to every PLC on the line (station 0). Nobody answers.
+
+        Raises:
+            LineReadOnly: it writes, and the line may only be read.
+        """
+        self.require_leave(request)
         self.transport.write(self.codec.encode(0, request))
+
+    def require_leave(self, request: Request[A]) -> None:
+        """Check that this request may be sent at all.
+
+        Raises:
+            LineReadOnly: it writes, and the line may only be read.
+        """
+        if self.read_only and request.writes:
+            raise LineReadOnly(f"{request.command.words} ({request.command:02X})")
 
     # --- one try ----------------------------------------------------------------------------------
 
@@ -192,7 +279,7 @@ class Link:
         Raises:
             LineError: nothing was learnt by this try; the PLC may not even have answered.
         """
-        self.try_once(ReadBriefStatus())
+        self.try_once(self.codec.probe)
         if self.echoes is None:
             self.hearing.doubt = True
             self.hearing.words = self.hearing.words or "more than one answer"
@@ -206,15 +293,17 @@ class Link:
         Raises:
             TransportTimeout, TransportClosed, FrameError: this try has failed, and left a doubt.
             PlcRefused: the answer is an error code.
+            LineReadOnly: it writes, and the line may only be read.
         """
-        raw = self.codec.encode(self.station, request)
+        self.require_leave(request)
+        sent = self.prepare(request)
         self.hearing.words = ""
         self.counters.exchanges += 1
         try:
-            self.transport.write(raw)
+            self.send(sent)
             size = self.codec.answer_bytes(request)
-            deadline = self.transport.clock() + (len(raw) + size) * self.byte_time_s
-            return self._await(request, raw, size, deadline + self.timeout_s * self.hearing.patience)
+            deadline = self.transport.clock() + (len(sent.raw) + size) * self.byte_time_s
+            return self._await(request, sent, size, deadline + self.timeout_s * self.hearing.patience)
         except TransportTimeout:
             self.counters.timeouts += 1
             self.hearing.lost()
@@ -229,8 +318,34 @@ class Link:
         except BaseException:  # an interrupt too: the answer may still come
             self.hearing.lost()
             raise
+        finally:
+            self.heard_out()
 
-    def _await(self, request: Request[A], raw: bytes, size: int, deadline: float) -> A:
+    def prepare(self, request: Request[Any]) -> Sent:
+        """A request as it goes out.
+
+        Raises:
+            UsageError: it cannot be said in this protocol.
+        """
+        codec = self.codec
+        self._number = (self._number + 1) % codec.numbers
+        raw = codec.encode(self.station, request, self._number)
+        self._asked.add(codec.shape(request))
+        return Sent(raw, self.station, codec.code(request), self._number)
+
+    def send(self, sent: Sent) -> None:
+        """Write a request, when the line has been silent for as long as the protocol wants it."""
+        if self._quiet_s:
+            self.hearing.listen_until(self._quiet_from + self._quiet_s)
+        self.transport.write(sent.raw)
+
+    def heard_out(self) -> None:
+        """The line may be silent from now on."""
+        if self._quiet_s:
+            self._quiet_from = self.transport.clock()
+
+    def _await(self, request: Request[A], sent: Sent, size: int, deadline: float) -> A:
+        raw = sent.raw
         echo_due = self.echoes is True
         heard_before = self.counters.bytes_heard
         while True:
@@ -238,11 +353,14 @@ class Link:
             if frame.raw == raw and (echo_due or not self.codec.echo_may_pass(request)):
                 self._hear_echo()
                 echo_due = False
-            elif frame.station != self.station or frame.command != request.command:
+            elif not sent.answered_by(frame):
                 self.hearing.stray(frame)
             else:
                 try:
                     answer = self.codec.parse_answer(request, frame)
+                except TransportTimeout as error:  # what a gateway says instead of the PLC
+                    self.hearing.words = error.message
+                    raise
                 except FrameError as error:
                     self.hearing.words = error.message
                     self.hearing.stray(frame)
@@ -319,4 +437,5 @@ class Link:
             alive=alive,
             served=request.command in self.answered,
             unknown=unknown,
+            fence="loopbacks" if Command.LOOPBACK in self.codec.commands else "other questions",
         )

@@ -25,6 +25,7 @@ def no_answer(
     alive: bool = False,
     served: bool = False,
     unknown: bool = False,
+    fence: str = "loopbacks",
 ) -> NoAnswer:
     """The error for a request that found no answer to trust.
 
@@ -36,13 +37,14 @@ def no_answer(
         line: speed and format of the line, or the protocol where it has none.
         tries: how often it was asked at most.
         timeout_s: the PLC's time to answer.
-        alive: True if the PLC has answered loopbacks in between.
+        alive: True if the PLC has answered fences in between.
         served: True if it has answered this command before.
         unknown: True for a write that could not be read back.
+        fence: what fences are, in a word.
     """
     said = f"heard {heard}" if heard else "nothing heard"
     if alive:
-        said = f"it answers loopbacks, but not this; {said}"
+        said = f"it answers {fence}, but not this; {said}"
     if unknown:
         said += "; whether the PLC took it is not known"
     return NoAnswer(

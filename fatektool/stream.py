@@ -18,7 +18,7 @@ from fatektool.errors import FrameError, PlcRefused, TransportError, TransportTi
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from fatektool.link import Link
+    from fatektool.link import Link, Sent
     from fatektool.protocol.codec import Frame
     from fatektool.protocol.commands import Request
 
@@ -39,24 +39,25 @@ def ask_in_stream(link: Link, requests: Sequence[Request[A]], first: int, take: 
     hearing = link.hearing
     if hearing.drop_input() or hearing.doubt or link.echoes is not False:
         return
-    raw = link.codec.encode(link.station, requests[first])
+    asked = sent = link.prepare(requests[first])
     waiting: Frame | bytes = b""  # the last answer, not yet looked at
     try:
         for place in range(first, len(requests)):
-            link.transport.write(raw)
+            link.send(sent)
             link.counters.exchanges += 1
-            if place > first and not _accept(link, requests[place - 1], waiting, take):
+            if place > first and not _accept(link, requests[place - 1], asked, waiting, take):
                 hearing.give_up()
                 return
-            sent = len(raw)
+            asked = sent
             if place + 1 < len(requests):
-                raw = link.codec.encode(link.station, requests[place + 1])
-            received = _receive(link, requests[place], sent)
+                sent = link.prepare(requests[place + 1])
+            received = _receive(link, requests[place], len(asked.raw))
+            link.heard_out()
             if received is None:
                 return
             waiting = received
             if hearing.drop_input() or place + 1 == len(requests):
-                _accept(link, requests[place], waiting, take)
+                _accept(link, requests[place], asked, waiting, take)
                 return
     except TransportError:
         hearing.lost()
@@ -94,7 +95,9 @@ def _receive(link: Link, request: Request[A], sent: int) -> Frame | bytes | None
     return None
 
 
-def _accept(link: Link, request: Request[A], waiting: Frame | bytes, take: Callable[[A], None]) -> bool:
+def _accept(
+    link: Link, request: Request[A], sent: Sent, waiting: Frame | bytes, take: Callable[[A], None]
+) -> bool:
     """Look at an answer; True if it is what the request asked for."""
     hearing = link.hearing
     frame: Frame | None = None
@@ -106,7 +109,7 @@ def _accept(link: Link, request: Request[A], waiting: Frame | bytes, take: Calla
             frame = waiting
         if frame is None:
             return False
-        if frame.station == link.station and frame.command == request.command:
+        if sent.answered_by(frame):
             take(link.codec.parse_answer(request, frame))
             link.answered.add(request.command)
             return True

@@ -42,7 +42,15 @@ JOBS: Final[dict[str, dict[str, Entry]]] = {
         "loopback": Entry("loopback", "Stress the line; count and time what comes back."),
         "scan": Entry("scan", "Find who answers: station, baud, format, protocol."),
         "ports": Entry("ports", "List the serial ports of this computer."),
+        "link": Entry("link", "The PLC's own ports; its CLINK and M-BUS tables."),
         "decode": Entry("decode", "Explain frames, given as hex or from a trace."),
+        "modbus": Entry("modbus", "What Modbus calls the elements, both ways; no PLC."),
+    },
+    "Many PLCs": {
+        "fleet": Entry("fleet", "The same with every PLC of the inventory, many at once."),
+        "inventory": Entry("inventory", "Check, list and extend the file that names the PLCs."),
+        "history": Entry("history", "Programs as they changed, in a git repository."),
+        "check": Entry("check", "A monitoring plugin: is the PLC as it ought to be?"),
     },
     "Testing and scripting": {
         "simulate": Entry("simulate", "Be a PLC for others: TCP, UDP, pty."),

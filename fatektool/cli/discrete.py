@@ -1,4 +1,7 @@
-"""``discrete``: single discretes, enabled, disabled, set and reset (42), and listed (43, 44)."""
+"""``discrete``: single discretes, enabled, disabled, set and reset (42), and listed (43, 44).
+
+Over a protocol that cannot say what is disabled, they are switched and listed all the same.
+"""
 
 from __future__ import annotations
 
@@ -6,13 +9,15 @@ from typing import TYPE_CHECKING
 
 import click
 
+from fatektool.cli.broadcast import broadcast_option, means_all, send_to_all
 from fatektool.cli.documents import where
-from fatektool.cli.options import Connection, connection_options
+from fatektool.cli.modbus_map import modbus_map_option
+from fatektool.cli.options import Connection, connection_options, yes_option
 from fatektool.cli.read import warn_of
 from fatektool.errors import PlcError, PlcRefused, UsageError
 from fatektool.jobs.registers import read_disabled, read_elements
 from fatektool.jobs.selection import parse_items
-from fatektool.protocol.commands import Control, ControlDiscrete
+from fatektool.protocol.commands import Command, Control, ControlDiscrete
 
 if TYPE_CHECKING:
     from fatektool.cli.output import Voice
@@ -29,12 +34,25 @@ def discrete_command() -> None:
 
 
 def _control(name: str, control: Control, text: str) -> None:
+    """Make one of the four; what disables must be able to show it."""
+    switches = control in {Control.SET, Control.RESET}
+    needs = (Command.CONTROL_DISCRETE,) if switches else (Command.CONTROL_DISCRETE, Command.READ_DISABLED)
+
     @discrete_command.command(name, help=text, epilog=f"Example: fatektool discrete {name} X16 Y0-Y3 -p sim:")
     @click.argument("elements", nargs=-1, required=True)
+    @broadcast_option
+    @yes_option
     @connection_options
-    def command(elements: tuple[str, ...], connection: Connection, voice: Voice) -> int:
+    @modbus_map_option
+    def command(
+        elements: tuple[str, ...], connection: Connection, voice: Voice, *, broadcast: bool, yes: bool
+    ) -> int:
         wanted = _discretes(elements)
-        with connection.open(voice) as plc:
+        if means_all(connection, broadcast=broadcast):
+            requests = [ControlDiscrete(control, element) for element in wanted]
+            send_to_all(connection, voice, f"discrete {name}", requests, yes=yes)
+            return 0
+        with connection.open(voice, needs=needs, writes=True) as plc:
             refused = {}
             for element in wanted:
                 try:
@@ -57,6 +75,7 @@ _control("reset", Control.RESET, "Switch discretes off.")
 @discrete_command.command("list", epilog="Example: fatektool discrete list Y10-Y16 -p sim:")
 @click.argument("elements", nargs=-1, required=True)
 @connection_options
+@modbus_map_option
 def list_command(elements: tuple[str, ...], connection: Connection, voice: Voice) -> int:
     """Show which discretes are on, and which are disabled."""
     wanted = _discretes(elements)
@@ -87,13 +106,14 @@ def _show(
     on = read_elements(plc, elements)
     flags, errors = read_disabled(plc, on.values)
     unread = {str(element): error for element, error in (on.errors | errors).items()}
-    states = {
-        str(element): {"on": bool(on.values[element]), "disabled": flags[element]}
+    tells = Command.READ_DISABLED in plc.link.codec.commands
+    states: dict[str, dict[str, bool | None]] = {
+        str(element): {"on": bool(on.values[element]), "disabled": flags.get(element)}
         for element in elements
-        if element in flags
+        if element in (flags if tells else on.values)
     }
     not_taken = {
-        name: _why(name, state["disabled"], control)
+        name: _why(name, state["disabled"], control, holds=tells)
         for name, state in states.items()
         if control is not None and name not in refused and not _took(state, control)
     }
@@ -111,24 +131,27 @@ def _show(
     return PlcError.exit_code if unread or not_taken else 0
 
 
-def _took(state: dict[str, bool], control: Control) -> bool:
+def _took(state: dict[str, bool | None], control: Control) -> bool:
     if control in {Control.SET, Control.RESET}:
         return state["on"] == (control is Control.SET)
     return state["disabled"] == (control is Control.DISABLE)
 
 
-def _why(name: str, disabled: bool, control: Control) -> str:
+def _why(name: str, disabled: bool | None, control: Control, *, holds: bool) -> str:
+    """Why a discrete is not as it was asked to be; ``holds`` if this protocol could hold it."""
     if control not in {Control.SET, Control.RESET} or disabled:
         return "acknowledged, and nothing changed"
+    if not holds:
+        return "acknowledged, and nothing changed: it is disabled, an input, or the program writes it too"
     if name.startswith("X"):
         return f"an input follows its terminal; 'fatektool discrete disable {name}' holds it"
     return f"the program writes it too; 'fatektool discrete disable {name}' holds it"
 
 
-def _lines(states: dict[str, dict[str, bool]]) -> list[str]:
+def _lines(states: dict[str, dict[str, bool | None]]) -> list[str]:
     width = max(map(len, states), default=0)
-    held = {True: "DISABLED", False: "enabled"}
+    held = {True: "DISABLED", False: "enabled", None: ""}
     return [
-        f"{name:<{width}}  {'on' if state['on'] else 'off':<3}  {held[state['disabled']]}"
+        f"{name:<{width}}  {'on' if state['on'] else 'off':<3}  {held[state['disabled']]}".rstrip()
         for name, state in states.items()
     ]

@@ -10,6 +10,7 @@ from fatektool.cli.line_documents import doctor_document
 from fatektool.cli.loopback_view import findings
 from fatektool.cli.options import Connection, connection_options
 from fatektool.jobs.doctor import examine
+from fatektool.protocol.commands import Command
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -25,7 +26,7 @@ def doctor_command(connection: Connection, voice: Voice) -> int:
     Takes ten seconds or so; writes nothing. Where a serial line is silent, the usual speeds and formats are
     tried, which takes half a minute. Exit 1 if there is a fault.
     """
-    with connection.open(voice) as plc, voice.progress("steps") as bar:
+    with connection.open(voice, needs=(Command.LOOPBACK,)) as plc, voice.progress("steps") as bar:
         found = examine(plc, bar.update)
         document = doctor_document(plc, found)
     voice.show(document, _lines(document))

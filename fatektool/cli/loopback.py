@@ -17,6 +17,7 @@ from fatektool.jobs.loopback import run_loopback
 from fatektool.jobs.loopback_data import Pattern
 from fatektool.jobs.loopback_result import DEFAULT_COUNT, DEFAULT_SIZES, LoopbackPlan, usual_sizes
 from fatektool.jobs.raw_frame import MAX_FRAME, RawFrame
+from fatektool.protocol.commands import Command
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -104,7 +105,7 @@ def loopback_command(
         max_p99_ms=max_p99,
         raw=frame,
     )
-    with connection.open(voice) as plc:
+    with connection.open(voice, needs=(Command.LOOPBACK,) if frame is None else ()) as plc:
         with LiveFigures(voice) as live:
             result = run_loopback(plc, plan, live.update)
         findings = diagnose(Case(result, plc.link.line, plc.link.station, plc.link.codec))

@@ -6,33 +6,40 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from fatektool.cli.broadcast import broadcast_option, means_all, send_to_all
 from fatektool.cli.documents import where
 from fatektool.cli.options import Connection, connection_options, yes_option
 from fatektool.errors import UsageError
+from fatektool.protocol.commands import Command, RunStop
 
 if TYPE_CHECKING:
     from fatektool.cli.output import Voice
 
 
 @click.command("run", epilog="Example: fatektool run -p /dev/ttyUSB0 --yes")
+@broadcast_option
 @yes_option
 @connection_options
-def run_command(connection: Connection, voice: Voice, *, yes: bool) -> None:
+def run_command(connection: Connection, voice: Voice, *, broadcast: bool, yes: bool) -> None:
     """Let the PLC RUN (41), and read the mode back. The machine may move."""
-    _change(connection, voice, run=True, yes=yes)
+    _change(connection, voice, run=True, broadcast=broadcast, yes=yes)
 
 
 @click.command("stop", epilog="Example: fatektool stop -p /dev/ttyUSB0 --yes")
+@broadcast_option
 @yes_option
 @connection_options
-def stop_command(connection: Connection, voice: Voice, *, yes: bool) -> None:
+def stop_command(connection: Connection, voice: Voice, *, broadcast: bool, yes: bool) -> None:
     """STOP the PLC (41), and read the mode back. The machine loses its control."""
-    _change(connection, voice, run=False, yes=yes)
+    _change(connection, voice, run=False, broadcast=broadcast, yes=yes)
 
 
-def _change(connection: Connection, voice: Voice, *, run: bool, yes: bool) -> None:
+def _change(connection: Connection, voice: Voice, *, run: bool, broadcast: bool, yes: bool) -> None:
     mode = "RUN" if run else "STOP"
-    with connection.open(voice) as plc:
+    if means_all(connection, broadcast=broadcast):
+        send_to_all(connection, voice, mode, [RunStop(run)], yes=yes)
+        return
+    with connection.open(voice, needs=(Command.RUN_STOP,), writes=True) as plc:
         before = plc.brief_status().flags.running
         if before != run:
             question = (

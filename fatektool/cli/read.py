@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fatektool.cli.documents import where
+from fatektool.cli.modbus_map import modbus_map_option
 from fatektool.cli.options import Connection, connection_options
 from fatektool.cli.output import Voice, table
 from fatektool.errors import DataError, PlcError
@@ -35,6 +36,7 @@ SELECTION = (
 )  # fmt: skip
 @click.argument("elements", nargs=-1, required=True)
 @connection_options
+@modbus_map_option
 def read_command(elements: tuple[str, ...], connection: Connection, voice: Voice) -> int:
     """Read elements of any kind."""
     items = parse_items(elements)

@@ -73,7 +73,7 @@ def restore_command(
     folder = None if no_safety_backup else require_folder(safety_dir or file.parent)
     options = RestoreOptions(stop, run, changed_only, rollback, any_header, single_pass)
     with (
-        connection.open(voice, needs=(Command.READ_PAGE, Command.WRITE_PAGE)) as plc,
+        connection.open(voice, needs=(Command.READ_PAGE, Command.WRITE_PAGE), writes=not dry_run) as plc,
         voice.progress() as bar,
     ):
         clock = plc.link.transport.clock
@@ -93,6 +93,8 @@ def restore_command(
                 error.details["command"] = command
                 error.hint = f"mend the cause, then: {command}"
                 raise
+            for warning in result.warnings[len(plan.warnings) :]:
+                voice.warn(warning)
         duration_s = clock() - began
         document = restore_document(
             plc, file, result, dry_run=dry_run, pages_to_write=len(plan.pages), duration_s=duration_s

@@ -81,13 +81,18 @@ def scan_command(
 ) -> int:
     """Find which stations answer, and at which speed, format and protocol.
 
-    Each is asked for its brief status (40), which changes nothing. A silent station costs the wire time and
+    Each is asked for its brief status (40), over Modbus for R0, which changes nothing.
+
+    A silent station costs the wire time and
     --timeout: a shorter one makes a scan faster, and deaf to slow PLCs. Exit 1 if nobody answers.
     """
     settings = _settings(connection, bauds, formats, protocols)
     with ExitStack() as stack:
         transport = connection.open_line(voice, stack)
         serial = transport.line is not None
+        networks = [setting.codec.name for setting in settings if setting.codec.data_bits is None]
+        if serial and networks:
+            raise UsageError(f"{networks[0]} is for networks: {connection.target} is a serial line")
         if not serial and len({setting.line.baud for setting in settings}) > 1:
             raise UsageError(
                 f"{connection.target} has no speed and format to try: expected a serial port",
@@ -134,7 +139,7 @@ def _settings(
             for baud in bauds or (connection.baud,)
             for form in formats or (own,)
         ]
-        carrying = [line for line in lines if line.data_bits >= codec.data_bits]
+        carrying = [line for line in lines if line.data_bits >= (codec.data_bits or 0)]
         if not carrying:
             tried = ", ".join(formats or (own,))
             raise UsageError(

@@ -63,7 +63,9 @@ _DEFAULT_MODELS = ", ".join(f"{spoken.model} with {name}" for name, spoken in SL
     "--strict-baud", is_flag=True, help="A client of a pty at another speed than --baud is not understood."
 )
 @click.option(
-    "--format", "line_format", help="Bits a character, for the pace.  [default: 7E1; 8E1 for mseries]"
+    "--format",
+    "line_format",
+    help="Bits a character, for the pace.  [default: 7E1; 8E1 for mseries and modbus-rtu]",
 )
 @click.option("--scan-ms", type=click.FloatRange(0, 60_000), default=0.0, help="Time to answer.")
 @click.option(

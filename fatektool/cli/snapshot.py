@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import click
 
+from fatektool.cli.modbus_map import modbus_map_option
 from fatektool.cli.options import PATH, Connection, connection_options_but_format, voice_options
 from fatektool.cli.read import SELECTION, shown, warn_of
 from fatektool.cli.report import report_option, write_snapshot_report
@@ -22,6 +23,7 @@ from fatektool.jobs.snapshot_formats import FORMATS, SUFFIXES, as_json, as_ndjso
 from fatektool.jobs.snapshot_spec import MAX_SPEC, Spec, SpecItem, everything, items_of, limits, parse_spec
 from fatektool.jobs.snapshot_store import Keep, append_line, encoded, require_lines, save_dated
 from fatektool.program.files import read_bounded, require_folder, require_place, write_whole
+from fatektool.protocol.commands import Command
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -111,6 +113,7 @@ def snapshot_command() -> None:
 @report_option
 @either_format
 @connection_options_but_format
+@modbus_map_option
 def take_command(
     elements: tuple[str, ...],
     connection: Connection,
@@ -137,7 +140,7 @@ def take_command(
             f"--report shows the snapshots in {folder}: expected --format json or ndjson, got {form}"
         )
     _require_places(output, folder, append, kept)
-    with connection.open(voice) as plc:
+    with connection.open(voice, needs=(Command.DETAILED_STATUS,) if whole else ()) as plc:
         snapshot = _take(plc, items, whole=whole)
     text = FORMATS[form](snapshot)
     if folder is not None:

@@ -10,6 +10,7 @@ import click
 from click.core import ParameterSource
 
 from fatektool.cli.documents import where
+from fatektool.cli.modbus_map import modbus_map_option
 from fatektool.cli.options import PATH, Connection, connection_options, yes_option
 from fatektool.cli.output import Voice, can_ask
 from fatektool.cli.read import shown, warn_of
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
 @click.option("--no-safety-snapshot", is_flag=True, help="Do not save the present values: no way back.")
 @yes_option
 @connection_options
+@modbus_map_option
 def apply_command(
     file: Path,
     connection: Connection,
@@ -66,7 +68,7 @@ def apply_command(
     folder = None if no_safety_snapshot else require_folder(safety_dir or file.parent)
     safety: str | None = None
     failed: list[NotTaken] = []
-    with connection.open(voice) as plc:
+    with connection.open(voice, writes=not dry_run) as plc:
         plan = plan_apply(plc, snapshot, only)
         _warn(plan, voice)
         lines = list(_plan_lines(plan, snapshot, file))

@@ -10,6 +10,7 @@ from fatektool.cli.documents import status_document
 from fatektool.cli.options import Connection, connection_options
 from fatektool.cli.output import Voice, table
 from fatektool.jobs.status import StatusReport, read_status
+from fatektool.protocol.commands import Command
 from fatektool.protocol.status import DetailedStatus, RawStatus, System
 
 if TYPE_CHECKING:
@@ -21,7 +22,8 @@ if TYPE_CHECKING:
 @connection_options
 def status_command(connection: Connection, voice: Voice, *, brief: bool) -> None:
     """Show what the PLC is and how it is (40 and 53)."""
-    with connection.open(voice) as plc:
+    needs = (Command.BRIEF_STATUS,) if brief else (Command.BRIEF_STATUS, Command.DETAILED_STATUS)
+    with connection.open(voice, needs=needs) as plc:
         report = read_status(plc, brief=brief)
     voice.show(status_document(report), table(_rows(report)))
 

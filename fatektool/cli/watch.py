@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from fatektool.cli.documents import error_document
+from fatektool.cli.modbus_map import modbus_map_option
 from fatektool.cli.options import PATH, Connection, Seconds, connection_options
 from fatektool.cli.output import tell
 from fatektool.cli.read import SELECTION, shown
@@ -55,6 +56,7 @@ _AROUND: Final = 4  # title, header, what is left out, and the line of the curso
 @click.option("--count", type=click.IntRange(1), help="So many rounds; by default until Ctrl-C.")
 @report_option
 @connection_options
+@modbus_map_option
 def watch_command(
     elements: tuple[str, ...],
     connection: Connection,
@@ -214,7 +216,7 @@ def _table(
         unit = [Text(str(snapshot.elements[key].get("unit", "")))] if with_units else []
         last = snapshot.errors[key] if key in snapshot.errors else trend(trends[key])[-fits:]
         table.add_row(Text(key), text, *unit, Text(last))
-    mode = "RUN" if snapshot.running else "STOP"
+    mode = {True: "RUN", False: "STOP", None: "mode unknown"}[snapshot.running]
     title = f"{snapshot.time}  {mode}  station {snapshot.station} on {snapshot.target}"
     parts: list[Any] = [Text(title, no_wrap=True, overflow="ellipsis"), table]
     if len(snapshot.values) > room:

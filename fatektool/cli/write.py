@@ -6,12 +6,16 @@ from typing import TYPE_CHECKING
 
 import click
 
+from fatektool.cli.broadcast import broadcast_option, means_all, send_to_all
 from fatektool.cli.documents import where
-from fatektool.cli.options import Connection, connection_options
+from fatektool.cli.modbus_map import modbus_map_option
+from fatektool.cli.options import Connection, connection_options, yes_option
 from fatektool.cli.read import shown, warn_of
+from fatektool.connection import codec_named
 from fatektool.errors import DataError, LineError, PlcError
 from fatektool.jobs.assignment import parse_assignments
 from fatektool.jobs.register_writes import write_elements
+from fatektool.planner import plan_writes
 from fatektool.protocol.values import Value, decode
 
 if TYPE_CHECKING:
@@ -23,16 +27,27 @@ if TYPE_CHECKING:
     "write", epilog="Example: fatektool write R12=4261 WM8=0x5555 DR2=-1 D4:f32=1.5 Y0=on -p /dev/ttyUSB0"
 )
 @click.argument("assignments", nargs=-1, required=True, metavar="ELEMENT=VALUE…")
+@broadcast_option
+@yes_option
 @connection_options
-def write_command(assignments: tuple[str, ...], connection: Connection, voice: Voice) -> int:
+@modbus_map_option
+def write_command(
+    assignments: tuple[str, ...], connection: Connection, voice: Voice, *, broadcast: bool, yes: bool
+) -> int:
     """Write elements of any kind, in the fewest bytes, and read them back.
 
     What did not take is said (exit 4): a disabled discrete, a read-only register, one that the program writes
     too. A range takes one value for all of it, or one each: R0:3=1,2,3.
+
+    Nothing is asked, but before a broadcast.
     """
     pairs = parse_assignments(assignments)
+    if means_all(connection, broadcast=broadcast):
+        requests = plan_writes([(item.element, raw) for item, raw in pairs], codec_named(connection.protocol))
+        send_to_all(connection, voice, "write", requests, yes=yes)
+        return 0
     by_element = {item.element: item for item, _ in pairs}
-    with connection.open(voice) as plc:
+    with connection.open(voice, writes=True) as plc:
         try:
             failed = write_elements(plc, [(item.element, raw) for item, raw in pairs])
         except LineError as error:

@@ -15,6 +15,7 @@ from fatektool.connection import CODECS, usual_format
 from fatektool.errors import DataError, UsageError
 from fatektool.inventory.find import EXPECTATIONS
 from fatektool.inventory.lines import key_lines, line_of
+from fatektool.program.strict_toml import read_toml
 from fatektool.transport.base import LineSettings
 from fatektool.transport.target import Target, TargetKind
 
@@ -129,13 +130,11 @@ def parse_inventory(data: bytes, file: Path) -> Inventory:
         data: the file's bytes.
         file: the file, for the paths in it.
     """
-    import tomllib
-
     try:
         text = data.decode("utf-8-sig").replace("\r\n", "\n")
-        document = tomllib.loads(text)
+        document = read_toml(text)
         lines = key_lines(text)
-    except (ValueError, RecursionError) as error:  # UnicodeDecodeError and TOMLDecodeError among them
+    except ValueError as error:  # UnicodeDecodeError and TOMLDecodeError among them
         place = re.search(r" \(at line (\d+), column \d+\)$", str(error))
         told = str(error)[: place.start()] if place else str(error)
         return Inventory(file, faults=[Fault(int(place[1]) if place else None, f"no TOML: {told}")])

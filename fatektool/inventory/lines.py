@@ -68,8 +68,8 @@ def _statements(text: str) -> Iterator[tuple[int, str]]:
             if statement:
                 yield began, statement
             parts = []
-        elif not piece.startswith("#"):
-            if not "".join(parts).strip():
+        elif not piece.startswith("#") and (parts or piece.strip()):
+            if not parts:
                 began = line
             depth += {"[": 1, "{": 1, "]": -1, "}": -1}.get(piece, 0)
             parts.append(piece)

@@ -21,6 +21,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.errors import DataError, UsageError
+from fatektool.program.strict_toml import read_toml
 from fatektool.protocol.link_checks import CLINK_COMMANDS, HIGH_SPEED_COMMANDS, MBUS_COMMANDS
 from fatektool.protocol.link_messages import MessageTable
 from fatektool.protocol.link_operands import (
@@ -68,11 +69,9 @@ def load_table(data: bytes, name: str) -> Table:
     Raises:
         DataError: no TOML, an unknown key, a value that fits no word; says in which transaction, from 0.
     """
-    import tomllib
-
     try:
-        document = tomllib.loads(data.decode())
-    except (ValueError, RecursionError) as error:  # UnicodeDecodeError and TOMLDecodeError among them
+        document = read_toml(data.decode())
+    except ValueError as error:  # UnicodeDecodeError and TOMLDecodeError among them
         raise DataError(f"{name}: no TOML: {error}", file=name) from error
     known = [kind.value for kind in TableKind]
     if document.get("kind") not in known:

@@ -17,6 +17,7 @@ from fatektool.planner import Values, plan_reads, turnaround_bytes
 from fatektool.planner.atoms import Atom, atoms_of
 from fatektool.protocol.commands import (
     MAX_DISCRETES,
+    Command,
     ReadDisabled,
     ReadDiscretes,
     ReadMixed,
@@ -172,7 +173,7 @@ class _Reader:
             except PlcRefused:
                 if not link.counters.trouble:
                     raise
-                link.fence()  # on a bad line it may have been the answer to an earlier request
+                link.fence(request)  # on a bad line it may have been the answer to an earlier request
                 self._take([request], ask_all(link, [request]))
         except PlcRefused as error:
             self.reading.errors[element] = error.message
@@ -212,12 +213,16 @@ def by_request(elements: Sequence[Element], requests: Sequence[Request[Any]]) ->
 def read_disabled(plc: Plc, elements: Iterable[Element]) -> tuple[dict[Element, bool], dict[Element, str]]:
     """Which discretes are disabled, and what the PLC said of those that it refused.
 
+    Nothing is known of any where the protocol has no command for it.
+
     Args:
         plc: the PLC.
         elements: discretes of one bit.
     """
     flags: dict[Element, bool] = {}
     errors: dict[Element, str] = {}
+    if Command.READ_DISABLED not in plc.link.codec.commands:
+        return flags, errors
     todo = _runs(elements)
     try:
         requests = [ReadDisabled(first, count) for first, count in todo]

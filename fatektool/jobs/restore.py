@@ -7,7 +7,7 @@ The order, and what an end at each step leaves in the PLC::
     3. the PLC's program is read; equal: done                  the old program
     4. it is on disk as a safety backup                        the old program
     5. the plan is shown and agreed to                         the old program
-    6. STOP; pages are written, 0 to N                         part old, part new: the same command goes on
+    6. still the same PLC? STOP; pages are written, 0 to N     part old, part new: the same command goes on
     7. all is read back and compared                           the new program, not yet proven
     8. RUN, if asked                                           the new program
 
@@ -119,15 +119,7 @@ def plan_restore(
             "restore another backup; or --any-header, if the PLC had this very header when it was backed up"
         )
     status = plc.detailed_status()
-    words = status.system.ladder_words
-    if words != backup.program.ladder_words:
-        raise DataError(
-            f"the program does not fit this PLC: expected a ladder size of {words} words, "
-            f"got {backup.program.ladder_words} in the file",
-            hint="restore a backup of this PLC, or of one of the same model",
-            plc_ladder_words=words,
-            file_ladder_words=backup.program.ladder_words,
-        )
+    _require_fit(backup.program, status.system.ladder_words)
     if status.flags.rom_pack:
         raise PlcNotReady(
             "a ROM pack is fitted: the PLC takes no program over the link",
@@ -139,6 +131,7 @@ def plan_restore(
             hint="make the machine safe, then add --stop",
         )
     reading = _read_present(plc, options, progress)
+    _require_fit(backup.program, reading.program.ladder_words)  # it may be another PLC by now
     comparison = compare(backup.program, reading.program)
     every = range(len(backup.program.pages))
     pages = tuple(comparison.page_numbers if options.changed_only else every) if comparison.pages else ()
@@ -154,6 +147,17 @@ def plan_restore(
         tuple(warnings),
         options,
     )
+
+
+def _require_fit(program: Program, words: int) -> None:
+    if words != program.ladder_words:
+        raise DataError(
+            f"the program does not fit this PLC: expected a ladder size of {words} words, "
+            f"got {program.ladder_words} in the file",
+            hint="restore a backup of this PLC, or of one of the same model",
+            plc_ladder_words=words,
+            file_ladder_words=program.ladder_words,
+        )
 
 
 def _read_present(plc: Plc, options: RestoreOptions, progress: Progress) -> Reading:
@@ -176,17 +180,20 @@ def carry_out(
 
     Raises:
         RestoreIncomplete: the PLC's program is neither old nor new; ``details`` say which pages are.
+        DataError: this is not the PLC that the plan was made of; nothing was written.
         PlcError: nothing was written; or all was, and RUN is refused; or it was rolled back.
         LineError: the same, for want of an answer.
     """
     running = plan.running
+    warnings = plan.warnings
     if plan.pages:
+        _require_as_planned(plc, plan)
         if running:
             plc.stop()
             running = False
-        Rewrite(plc, plan.wanted, plan.present.program, safety_backup, progress).write(
-            plan.pages, rollback=plan.options.rollback
-        )
+        rewrite = Rewrite(plc, plan.wanted, plan.present.program, safety_backup, progress)
+        rewrite.write(plan.pages, rollback=plan.options.rollback)
+        warnings += rewrite.warnings
     if plan.options.run and not running:
         try:
             plc.run()
@@ -206,8 +213,28 @@ def carry_out(
         safety_backup=safety_backup,
         mode_before="run" if plan.running else "stop",
         mode_after="run" if running else "stop",
-        warnings=plan.warnings,
+        warnings=warnings,
     )
+
+
+def _require_as_planned(plc: Plc, plan: RestorePlan) -> None:
+    """Look once more before the first page: a question may have waited for its answer for a long time."""
+    status = plc.detailed_status()
+    before, now = plan.present.plc["system"], status.system.document()
+    if now != before:
+        changed = ", ".join(
+            f"{name} {before[name]}, now {now[name]}" for name in now if now[name] != before[name]
+        )
+        raise DataError(
+            f"this is not the PLC whose program was read ({changed}): nothing was written",
+            hint="was it exchanged meanwhile? run the restore again",
+        )
+    if status.flags.rom_pack or (status.flags.running and not plan.running):
+        what = "got a ROM pack" if status.flags.rom_pack else "went to RUN"
+        raise PlcNotReady(
+            f"the PLC {what} since its program was read: nothing was written",
+            hint="was it exchanged meanwhile? run the restore again",
+        )
 
 
 def keep_way_back(plan: RestorePlan, file: Path, folder: Path) -> Path:

@@ -39,6 +39,22 @@ class Rewrite:
         self._safety_backup = safety_backup
         self._progress = progress
         self._holds: dict[int, str] = {}
+        self._unread: set[int] = set()  # acknowledged, which is not yet a proof
+        self._again: list[int] = []
+        self._foreign: list[int] = []
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the user should know of a program that was proven in the end."""
+        if not self._again:
+            return ()
+        told = f"page {ranges(self._again)} was acknowledged, not taken, and written again"
+        if self._foreign:
+            told += (
+                f"; page {ranges(self._foreign)} held neither the old nor the new program: was the PLC "
+                f"exchanged, or is somebody else loading a program? The safety backup may be of another"
+            )
+        return (told,)
 
     def write(self, pages: Sequence[int], *, rollback: bool = False) -> None:
         """Write pages in order, read the whole program back and compare.
@@ -88,11 +104,14 @@ class Rewrite:
                 self._holds[number] = before
                 raise
             self._holds[number] = state
+            self._unread.add(number)
             self._progress(phase, done, len(pages))
 
     def _prove(self, program: Program, state: str) -> None:
         wrong = self._read_back(program, range(len(program.pages)), "reading back")
         if wrong:
+            self._again = wrong
+            self._foreign = self._pages(_UNCERTAIN)
             self._write(program, wrong, state, "writing again")
             wrong = self._read_back(program, wrong, "reading back again")
         if wrong:
@@ -100,11 +119,18 @@ class Rewrite:
                 f"the PLC acknowledged page {ranges(wrong)}, but holds something else there",
                 hint="the PLC's program memory may be worn out or protected",
             )
+        words = self._plc.detailed_status().system.ladder_words
+        if words != program.ladder_words:
+            raise PlcError(
+                f"the PLC's ladder size is {words} words now, and was {program.ladder_words} before",
+                hint="was it exchanged meanwhile? see 'fatektool status'",
+            )
 
     def _read_back(self, program: Program, pages: Sequence[int], phase: str) -> list[int]:
         total = len(pages)
         self._progress(phase, 0, total)
         found = self._plc.read_pages(pages, lambda done: self._progress(phase, done, total))
+        self._unread.difference_update(pages)
         wrong = {
             number: page for number, page in zip(pages, found, strict=True) if page != program.pages[number]
         }
@@ -143,11 +169,11 @@ class Rewrite:
 
     def _incomplete(self, cause: str) -> RestoreIncomplete:
         states = {_NEW: "holds the new program", _UNCERTAIN: "is uncertain", _OLD: "holds the old program"}
-        parts = [
-            f"page {ranges(found)} {words}"
-            for state, words in states.items()
-            if (found := self._pages(state))
-        ]
+        unread = [number for number in self._pages(_NEW, _OLD) if number in self._unread]
+        said = {words: self._pages(state) for state, words in states.items()}
+        said = {words: [number for number in pages if number not in unread] for words, pages in said.items()}
+        said["was written and not read back"] = unread
+        parts = [f"page {ranges(pages)} {words}" for words, pages in said.items() if pages]
         way_back = (
             f"the old program lies in {self._safety_backup}"
             if self._safety_backup
@@ -161,6 +187,7 @@ class Rewrite:
             pages_written=self._pages(_NEW),
             pages_uncertain=self._pages(_UNCERTAIN),
             pages_old=self._pages(_OLD),
+            pages_unread=unread,
             safety_backup=self._safety_backup,
         )
 

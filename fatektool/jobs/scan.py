@@ -1,8 +1,9 @@
 """Who is on the line: which stations answer, at which speed and format, in which protocol.
 
-A probe is one brief status (40), sent once: silence is the usual answer, and its deadline is all that a scan
-is made of. What is heard and is no frame makes a probe be repeated, as it may be an answer come to grief. A
-late answer says itself which station it is of, so it counts as well as one in time.
+A probe is what the codec says, a brief status (40) or a register, sent once: silence is the usual answer, and
+its deadline is all that a scan is made of. A refusal is somebody too. What is heard and is no frame makes a
+probe be repeated, as it may be an answer come to grief. A late answer says itself which station it is of, so
+it counts as well as one in time.
 
 Order: the PLCs of one line share one setting. So the first station is tried at every setting before the
 others are; then the settings that answered are scanned to the end, then the rest.
@@ -11,21 +12,21 @@ others are; then the settings that answered are scanned to the end, then the res
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import inf
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import FrameError, PlcRefused, TransportClosed, TransportTimeout, UsageError
-from fatektool.protocol.commands import ReadBriefStatus
+from fatektool.protocol.codec import require_station
+from fatektool.protocol.status import BriefStatus
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from fatektool.protocol.codec import Codec, Frame
-    from fatektool.protocol.status import BriefStatus
     from fatektool.transport.base import LineSettings, Transport
 
 _READ_BYTES: Final = 4096
 _MOST_CLOSED: Final = 3
-_REQUEST: Final = ReadBriefStatus()
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +44,7 @@ class Station:
     Attributes:
         station: 1 to 254.
         setting: at which it did.
-        brief: its brief status; None if it refused to tell.
+        brief: its brief status; None if it refused to tell, or was not asked.
         latency_s: how long it took; None if its answer came late.
     """
 
@@ -101,12 +102,16 @@ def scan(
     """
     if not settings or not stations or not all(1 <= station <= 254 for station in stations):
         raise UsageError("scan: expected settings, and stations from 1 to 254")
+    for setting in settings:
+        require_station(setting.codec, min(stations))
     result = ScanResult()
     began = transport.clock()
     scanner = _Scanner(transport, settings[0], timeout_s, retries=retries, result=result, on_found=on_found)
-    total = len(settings) * len(stations)
+    total = sum(station <= setting.codec.last_station for setting in settings for station in stations)
     try:
         for setting, station in _order(settings, stations, result):
+            if station > setting.codec.last_station:
+                continue
             scanner.probe(setting, station)
             result.probes += 1
             on_probe(result.probes, total)
@@ -151,6 +156,7 @@ class _Scanner:
         self._decoder = first.codec.decoder()
         self._closed = 0
         self._noise_bytes = 0
+        self._heard_at = -inf
 
     def probe(self, setting: Setting, station: int) -> None:
         """Ask one station, again only after noise."""
@@ -172,12 +178,14 @@ class _Scanner:
     def _ask(self, setting: Setting, station: int) -> bool:
         """One request; True if its station answered."""
         transport, codec = self._transport, setting.codec
-        request = codec.encode(station, _REQUEST)
+        probe = codec.probe
+        request = codec.encode(station, probe)
         try:
             self._look_at(transport.drain(), setting)
+            self._keep_quiet(setting)
             transport.write(request)
             asked = transport.clock()
-            wire_s = (len(request) + codec.answer_bytes(_REQUEST)) * setting.line.byte_time_s
+            wire_s = (len(request) + codec.answer_bytes(probe)) * setting.line.byte_time_s
             deadline = asked + wire_s + self._timeout_s
             begun = 0.0  # until when the rest of an answer may come that has begun
             while (rest := (begun or deadline) - transport.clock()) > 0:
@@ -200,9 +208,20 @@ class _Scanner:
             transport.renew()
         return False
 
+    def _keep_quiet(self, setting: Setting) -> None:
+        """Let the silence pass that the protocol wants between frames, and look at what breaks it."""
+        quiet_s = setting.codec.quiet_chars * setting.line.byte_time_s
+        while (rest := self._heard_at + quiet_s - self._transport.clock()) > 0:
+            try:
+                self._look_at(self._transport.read(_READ_BYTES, rest), setting)
+            except TransportTimeout:
+                continue
+
     def _look_at(self, data: bytes, setting: Setting, asked: float = 0.0, station: int = 0) -> list[int]:
         """The stations whose answers are in the bytes; ``station`` was asked at ``asked``."""
         answered: list[int] = []
+        if data:
+            self._heard_at = self._transport.clock()
         self._decoder.feed(data)
         while True:
             try:
@@ -217,13 +236,17 @@ class _Scanner:
 
     def _take(self, frame: Frame, setting: Setting, latency_s: float | None) -> bool:
         """True for an answer; an echo of the request is none."""
-        if frame.command != _REQUEST.command or frame.raw == setting.codec.encode(frame.station, _REQUEST):
+        codec, brief = setting.codec, None
+        probe = codec.probe
+        if frame.command != codec.code(probe) or frame.raw == codec.encode(frame.station, probe):
             return False
-        brief: BriefStatus | None
         try:
-            brief = setting.codec.parse_answer(_REQUEST, frame)
+            answer = codec.parse_answer(probe, frame)
+            brief = answer if isinstance(answer, BriefStatus) else None
+        except TransportTimeout:  # a gateway that found nobody
+            return False
         except PlcRefused:
-            brief = None
+            pass
         known = [(found.station, found.setting) for found in self._result.found]
         if (frame.station, setting) not in known:
             found = Station(frame.station, setting, brief, latency_s)

@@ -10,7 +10,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import os
 import re
@@ -21,6 +20,8 @@ from fatektool.errors import DataError, UsageError
 from fatektool.jobs.registers import read_elements
 from fatektool.jobs.times import utc
 from fatektool.program.files import file_error
+from fatektool.program.strict_json import read_json
+from fatektool.protocol.commands import Command
 from fatektool.protocol.elements import Element
 from fatektool.protocol.values import NUMBERS, Value, ValueType, decode
 from fatektool.transport.base import no_note
@@ -49,7 +50,7 @@ class Snapshot:
         target: as the user named it.
         station: 1 to 254.
         protocol: ``facon``.
-        running: True in RUN.
+        running: True in RUN; None if the protocol does not tell.
         duration_s: how long the reading took.
         requests: how many requests it took.
         values: by key; None where there is an error.
@@ -61,7 +62,7 @@ class Snapshot:
     target: str
     station: int
     protocol: str
-    running: bool
+    running: bool | None
     duration_s: float
     requests: int
     values: dict[str, Value | None]
@@ -88,7 +89,8 @@ def take_snapshot(
     """
     clock = plc.link.transport.clock
     time, began = utc(), clock()
-    running = plc.brief_status().flags.running
+    tells = Command.BRIEF_STATUS in plc.link.codec.commands
+    running = plc.brief_status().flags.running if tells else None
     reading = read_elements(plc, [item.item.element for item in items], limits=limits)
     values: dict[str, Value | None] = {}
     elements: dict[str, dict[str, Any]] = {}
@@ -112,7 +114,7 @@ def take_snapshot(
         plc.link.codec.name,
         running,
         round(clock() - began, 3),
-        reading.requests + 1,
+        reading.requests + tells,
         values,
         elements,
         errors,
@@ -181,14 +183,14 @@ def parse_snapshot(data: bytes, name: str, note: Callable[[str], None] = no_note
 
 def _document(data: bytes, name: str, note: Callable[[str], None]) -> object:
     try:
-        return _json(data)
-    except (ValueError, RecursionError) as error:
+        return read_json(data)
+    except ValueError as error:
         first = error
     lines = data.strip().split(b"\n")[-_LINES_LOOKED_AT:]
     for number, line in enumerate(reversed(lines)):
         try:
-            document = _json(line)
-        except (ValueError, RecursionError):
+            document = read_json(line)
+        except ValueError:
             continue
         if isinstance(document, dict) and "schema" in document:
             if number:
@@ -198,14 +200,6 @@ def _document(data: bytes, name: str, note: Callable[[str], None]) -> object:
     raise DataError(
         f"{name}: no snapshot, or a damaged one: {first}", hint="is it the right file?", file=name
     ) from first
-
-
-def _json(data: bytes) -> object:
-    return json.loads(data.decode(), parse_constant=_no_number)
-
-
-def _no_number(text: str) -> float:
-    raise ValueError(f"{text} is no number")
 
 
 def _finite(value: object) -> bool:
@@ -223,7 +217,7 @@ _CHECKS: Final[dict[str, Callable[[Any], bool]]] = {
     "target": lambda value: isinstance(value, str),
     "station": lambda value: type(value) is int and 1 <= value <= 254,
     "protocol": lambda value: isinstance(value, str),
-    "running": lambda value: isinstance(value, bool),
+    "running": lambda value: value is None or isinstance(value, bool),
     "duration_s": lambda value: _finite(value) and value >= 0,
     "requests": lambda value: type(value) is int and value >= 0,
     "values": lambda value: isinstance(value, dict) and all(map(_is_value, value.values())),

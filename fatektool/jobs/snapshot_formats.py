@@ -74,9 +74,13 @@ def as_influx(snapshot: Snapshot) -> str:
 def as_prometheus(snapshot: Snapshot) -> str:
     """Prometheus exposition format: ``fatek_value`` with labels; samples carry no time."""
     where = f'target="{_label(snapshot.target)}",station="{snapshot.station}"'
-    lines = [
-        *_gauge("running", "1 in RUN, 0 in STOP."),
-        f"fatek_running{{{where}}} {int(snapshot.running)}\n",
+    lines = []
+    if snapshot.running is not None:
+        lines += [
+            *_gauge("running", "1 in RUN, 0 in STOP."),
+            f"fatek_running{{{where}}} {int(snapshot.running)}\n",
+        ]
+    lines += [
         *_gauge("snapshot_timestamp_seconds", "When the values were read."),
         f"fatek_snapshot_timestamp_seconds{{{where}}} {_seconds(snapshot)}\n",
         *_gauge("value", "Value of an element."),

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.errors import DataError, UsageError
 from fatektool.jobs.selection import Item, parse_item
+from fatektool.program.strict_toml import read_toml
 from fatektool.protocol.elements import Element
 from fatektool.protocol.values import NUMBERS, default_type
 
@@ -84,11 +85,9 @@ def parse_spec(data: bytes, name: str, groups: Iterable[str] = ()) -> Spec:
     Raises:
         DataError: no TOML, a wrong key or value; says which item.
     """
-    import tomllib
-
     try:
-        document = tomllib.loads(data.decode())
-    except (ValueError, RecursionError) as error:  # UnicodeDecodeError and TOMLDecodeError among them
+        document = read_toml(data.decode())
+    except ValueError as error:  # UnicodeDecodeError and TOMLDecodeError among them
         raise DataError(f"{name}: no TOML: {error}") from error
     unknown = set(document) - {"item", "interval_s"}
     entries = document.get("item")

@@ -29,6 +29,8 @@ def verify(plc: Plc, program: Program, *, progress: Progress = no_progress) -> C
         PlcRefused: the PLC does not give its program away.
     """
     status = plc.detailed_status()
+    if status.system.ladder_words != program.ladder_words:
+        status = plc.detailed_status()
     size = status.system.ladder_words
     if size != program.ladder_words:
         return Comparison(program.ladder_words, size, ())

@@ -16,6 +16,10 @@ line, the lines one behind the other, and a plan is a path over them:
   request of its own; a run of a read goes on over a gap where that costs less than another request;
 - **mixed** items (48, 49): registers, pairs of them, discretes, packed words, of all lines together.
 
+Where a protocol has no mixed requests, as Modbus, a plan has runs only; where it cannot lay a run over two
+elements (``Codec.neighbourhood``), each side is planned for itself. What one request holds is the codec's
+too.
+
 An element of 32 bits or a packed word lies within one run or item, so that its parts are of one scan, in
 reads and in writes; a write writes each atom once. Of all plans that keep to this, the result is one that
 costs least: ``edges.py`` says why no other needs to be looked at, ``paths.py`` why the least of them is

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.protocol.commands import (
     ReadDiscretes,
@@ -20,13 +20,16 @@ if TYPE_CHECKING:
     from fatektool.protocol.codec import Codec
 
 
+WORD: Final = 16
+
+
 def turnaround_bytes(turnaround_s: float, byte_time_s: float) -> float:
     """A PLC's turnaround as so many bytes of line time."""
     return turnaround_s / byte_time_s
 
 
 class Costs:
-    """Bytes of requests and answers, of reads or of writes.
+    """Bytes of requests and answers, of reads or of writes, and what one request holds.
 
     Args:
         codec: the protocol.
@@ -38,13 +41,36 @@ class Costs:
         self._codec = codec
         self._turnaround = turnaround
         self._writes = writes
+        self.run = cache(self._run_cost)
         self.run_value = cache(self._run_value)
         self.run_base = cache(self._run_base)
         self.mixed_item = cache(self._mixed_item)
-        self.mixed_base = self._wire(self._mixed("R", 1)) - self._mixed_item("R") + turnaround
+        self.mixed_words = codec.mixed_words(writes=writes)
+        self.mixed_base = 0.0
+        if self.mixed_words:
+            self.mixed_base = self._wire(self._mixed("R", 1)) - self._mixed_item("R") + turnaround
+        self.most = cache(self._most)
+        self.packs_discretes = cache(self._packs_discretes)
+        self.one_is_cheap = cache(self._one_is_cheap)
 
     def _wire(self, request: Request[Any]) -> int:
-        return len(self._codec.encode(1, request)) + self._codec.answer_bytes(request)
+        return self._codec.request_bytes(request) + self._codec.answer_bytes(request)
+
+    def _most(self, symbol: str) -> int:
+        """How many values a run holds."""
+        return self._codec.most(symbol, writes=self._writes)
+
+    def _packs_discretes(self, symbol: str) -> bool:
+        """True if discretes as such cost no more than words of them: then nothing else needs to be tried."""
+        return self._run_cost(symbol, WORD) <= self._run_cost(f"W{symbol}", 1)
+
+    def _one_is_cheap(self, symbol: str) -> bool:
+        """True if a run of one costs less than the longer ones would have it."""
+        return 2 * self._run_cost(symbol, 2) > self._run_cost(symbol, 1) + self._run_cost(symbol, 3)
+
+    def _run_cost(self, symbol: str, count: int) -> float:
+        """Bytes of a run, turnaround included."""
+        return self._wire(self._run(symbol, count)) + self._turnaround
 
     def _run(self, symbol: str, count: int) -> Request[Any]:
         first = Element(symbol, 0)

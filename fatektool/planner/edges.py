@@ -17,6 +17,11 @@ can reach, would be enough for the least path. Exchange arguments leave out most
 Where nothing may be touched but what is wanted, as in writes, a packed run or word begins and ends with its
 discretes. Between such, or before and behind, they are run or mixed as such, up to a multiple of 8 or the
 stretch's end.
+
+A protocol may write eight discretes in a byte whatever they are asked as (Modbus). Then there are runs of
+discretes only, and to each next element that fits into its last byte a run goes on for nothing. If all the
+rest of the line fits into one run, it ends only before a gap that costs more than another request: otherwise
+it could take over the run behind the gap.
 """
 
 from __future__ import annotations
@@ -25,8 +30,8 @@ from bisect import bisect_left, bisect_right
 from functools import cache
 from typing import TYPE_CHECKING, Final
 
+from fatektool.planner.costs import WORD
 from fatektool.planner.paths import Edge, Run
-from fatektool.protocol.commands import MAX_DISCRETES, MAX_READ_WORDS
 from fatektool.protocol.elements import KINDS, Element
 
 if TYPE_CHECKING:
@@ -35,7 +40,6 @@ if TYPE_CHECKING:
     from fatektool.planner.atoms import Line
     from fatektool.planner.costs import Costs
 
-WORD: Final = 16
 STEP: Final = 8
 
 
@@ -54,9 +58,13 @@ class Edges:
         number = bisect_right(self._starts, node) - 1
         line = self._lines[number]
         place = node - line.start
+        mixed = self._costs.mixed_words
         if KINDS[line.symbol].bits > 1:
             yield from self._register_runs(line, place)
-            yield from self._register_items(line, place)
+            if mixed:
+                yield from self._register_items(line, place)
+        elif self._costs.packs_discretes(line.symbol):
+            yield from self._bit_runs(line, place)
         elif line.exact:
             yield from self._exact_runs(line, place)
             yield from self._exact_items(line, place)
@@ -66,8 +74,7 @@ class Edges:
             yield from self._discrete_items(line, place)
 
     def _run(self, line: Line, to: int, symbol: str, first: int, count: int) -> Edge:
-        cost = self._costs.run_base(symbol) + self._costs.run_value(symbol) * count
-        return Edge(line.start + to, cost, 0, Run(symbol, first, count))
+        return Edge(line.start + to, self._costs.run(symbol, count), 0, Run(symbol, first, count))
 
     def _item(self, line: Line, to: int, symbol: str, address: int) -> Edge:
         item = Element(symbol, address)
@@ -78,8 +85,10 @@ class Edges:
     def _register_runs(self, line: Line, place: int) -> Iterator[Edge]:
         kind = KINDS[line.symbol]
         first = line.firsts[place]
-        to = line.place_past(first + MAX_READ_WORDS // kind.words * kind.stride, place)
+        to = line.place_past(first + self._costs.most(line.symbol) * kind.stride, place)
         ends = [to]
+        if line.uneven and self._costs.one_is_cheap(line.symbol):
+            ends += range(place + 1, to)
         while to < len(line) and to - 1 > place and line.firsts[to] <= line.lasts[to - 1]:
             to -= 1  # where elements overlap, the limit may be a bad place to end
             ends.append(to)
@@ -89,7 +98,7 @@ class Edges:
 
     def _register_items(self, line: Line, place: int) -> Iterator[Edge]:
         kind = KINDS[line.symbol]
-        near = 2 * MAX_READ_WORDS // kind.words * kind.stride
+        near = 2 * self._costs.most(line.symbol) * kind.stride
         if not line.uneven and line.rest_of_stretch(place) > near:
             return
         first, last = line.firsts[place], line.lasts[place]
@@ -123,7 +132,8 @@ class Edges:
         symbol = f"W{line.symbol}"
         first = line.firsts[place] // STEP * STEP
         room = (line.bound - first) // WORD
-        limit = first + min(room, MAX_READ_WORDS) * WORD
+        most = self._costs.most(symbol)
+        limit = first + min(room, most) * WORD
         cuts = self._cuts(number, first % WORD)
         for at in range(bisect_left(cuts, (line.lasts[place] + 1, 0)), len(cuts)):
             end, to = cuts[at]
@@ -133,7 +143,7 @@ class Edges:
         to = line.place_past(limit, place)
         if to > place:
             yield self._run(line, to, symbol, first, -(-(line.lasts[to - 1] + 1 - first) // WORD))
-        if room < MAX_READ_WORDS and limit + STEP <= line.bound and first >= STEP:
+        if room < most and limit + STEP <= line.bound and first >= STEP:
             beyond = line.place_past(limit + STEP, place)
             if beyond > to:  # what a run reaches that begins 8 earlier, and ends where the PLC does
                 yield self._run(line, beyond, symbol, first - STEP, room + 1)
@@ -145,10 +155,11 @@ class Edges:
         first = line.firsts[place]
         begin = first // STEP * STEP
         # Beyond so many discretes a packed run costs no more, and up to there it can reach.
-        dear = (ahead + word) / (value - word / WORD) if value * WORD > word else MAX_DISCRETES
-        near = line.place_past(first + min(int(dear) + 1, MAX_DISCRETES), place)
+        most = self._costs.most(symbol)
+        dear = (ahead + word) / (value - word / WORD) if value * WORD > word else most
+        near = line.place_past(first + min(int(dear) + 1, most), place)
         unpacked = max(line.place_past(line.bound // STEP * STEP, place), near)
-        limit = line.place_past(first + MAX_DISCRETES, place)
+        limit = line.place_past(first + most, place)
         for to in (*range(place + 1, near + 1), *range(unpacked + 1, limit + 1)):
             last = line.lasts[to - 1]
             if to < len(line) and line.firsts[to] == last + 1 and line.firsts[to] % STEP:
@@ -176,13 +187,34 @@ class Edges:
         if line.lasts[place] == first and not (next_to and 2 * item(symbol) >= item(f"W{symbol}")):
             yield self._item(line, place + 1, symbol, first)
 
+    # --- discretes, where eight of them take a byte in any case -----------------------------------------
+
+    def _bit_runs(self, line: Line, place: int) -> Iterator[Edge]:
+        first, most = line.firsts[place], self._costs.most(line.symbol)
+        limit = line.place_past(first + most, place)
+        if limit == len(line):
+            request = self._costs.run(line.symbol, STEP) - 1
+            ends = {
+                end
+                for end in line.ends[bisect_right(line.ends, place) : -1]
+                if -(-(line.firsts[end] - line.lasts[end - 1] - 1) // STEP) > request
+            }
+            ends.add(limit)
+        else:
+            ends = {line.place_past(first + bits, place) for bits in range(STEP, most, STEP)}
+            ends |= {place + 1, limit}
+        for to in sorted(ends, reverse=True):
+            if to > place:
+                yield self._run(line, to, line.symbol, first, line.lasts[to - 1] + 1 - first)
+
     # --- discretes, and nothing but those wanted ------------------------------------------------------
 
     def _exact_runs(self, line: Line, place: int) -> Iterator[Edge]:
         first = line.firsts[place]
-        limit = line.place_past(first + MAX_DISCRETES, place)
+        most = self._costs.most(line.symbol)
+        limit = line.place_past(first + most, place)
         ends = {limit}
-        for address in range(first // STEP * STEP + STEP, min(first + MAX_DISCRETES, line.bound), STEP):
+        for address in range(first // STEP * STEP + STEP, min(first + most, line.bound), STEP):
             to = line.place_past(address, place)
             if to > place and line.lasts[to - 1] + 1 == address:
                 ends.add(to)
@@ -190,7 +222,7 @@ class Edges:
             yield self._run(line, to, line.symbol, first, line.lasts[to - 1] + 1 - first)
         if first % STEP:
             return
-        for words in range(min((line.bound - first) // WORD, MAX_READ_WORDS), 0, -1):
+        for words in range(min((line.bound - first) // WORD, self._costs.most(f"W{line.symbol}")), 0, -1):
             to = line.place_past(first + words * WORD, place)
             if to > place and line.lasts[to - 1] + 1 == first + words * WORD:
                 yield self._run(line, to, f"W{line.symbol}", first, words)

@@ -8,12 +8,13 @@ from fatektool.planner.atoms import lines_of
 from fatektool.planner.costs import Costs
 from fatektool.planner.edges import Edges
 from fatektool.planner.paths import Run, least_path
-from fatektool.protocol.commands import MAX_READ_WORDS, ReadDiscretes, ReadMixed, ReadRegisters, Request
+from fatektool.protocol.commands import ReadDiscretes, ReadMixed, ReadRegisters, Request
 from fatektool.protocol.elements import Element
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+    from fatektool.planner.atoms import Line
     from fatektool.protocol.codec import Codec
 
 
@@ -32,20 +33,39 @@ def plan_reads(
         turnaround: the PLC's time to answer, in bytes at this baud.
         limits: how many of a kind the PLC has, by symbol, where that is known; beyond what is wanted nothing
             is read past it.
+
+    Raises:
+        UsageError: the protocol cannot name one of the elements.
     """
-    lines = lines_of(elements, limits or {})
-    if not lines:
-        return []
     costs = Costs(codec, turnaround, writes=False)
+    requests: list[Request[Any]] = []
+    for some in neighbourhoods(elements, codec, writes=False):
+        requests += _plan(lines_of(some, limits or {}), costs)
+    return requests
+
+
+def neighbourhoods(elements: Iterable[Element], codec: Codec, *, writes: bool) -> list[list[Element]]:
+    """Elements by what can share a run.
+
+    Raises:
+        UsageError: the protocol cannot name one of them.
+    """
+    found: dict[int, list[Element]] = {}
+    for element in elements:
+        found.setdefault(codec.neighbourhood(element, writes=writes), []).append(element)
+    return [found[number] for number in sorted(found)]
+
+
+def _plan(lines: list[Line], costs: Costs) -> list[Request[Any]]:
     edges = Edges(lines, costs)
     requests: list[Request[Any]] = []
     mixed: list[Element] = []
-    for piece in least_path(edges.end, edges.of, costs.mixed_base, MAX_READ_WORDS):
+    for piece in least_path(edges.end, edges.of, costs.mixed_base, max(1, costs.mixed_words)):
         if isinstance(piece, Run):
             requests.append(_read(piece))
         else:
             mixed += piece
-    return requests + [ReadMixed(tuple(items)) for items in packed(mixed, MAX_READ_WORDS)]
+    return requests + [ReadMixed(tuple(items)) for items in packed(mixed, costs.mixed_words)]
 
 
 def _read(run: Run) -> Request[Any]:

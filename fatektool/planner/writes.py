@@ -11,19 +11,14 @@ from fatektool.planner.atoms import Atom, lines_of, parts_of, value_of
 from fatektool.planner.costs import Costs
 from fatektool.planner.edges import Edges
 from fatektool.planner.paths import Run, least_path
-from fatektool.planner.reads import packed
-from fatektool.protocol.commands import (
-    MAX_MIXED_WRITE_WORDS,
-    Request,
-    WriteDiscretes,
-    WriteMixed,
-    WriteRegisters,
-)
+from fatektool.planner.reads import neighbourhoods, packed
+from fatektool.protocol.commands import Request, WriteDiscretes, WriteMixed, WriteRegisters
 from fatektool.protocol.elements import Element
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from fatektool.planner.atoms import Line
     from fatektool.protocol.codec import Codec
 
 
@@ -36,26 +31,33 @@ def plan_writes(
         items: elements with their values, unsigned; no two may share an atom.
         codec: the protocol.
         turnaround: the PLC's time to answer, in bytes at this baud.
+
+    Raises:
+        UsageError: the protocol cannot name one of the elements, or not write it.
     """
     wanted = list(items)
     parts: dict[Atom, int] = {}
     for element, value in wanted:
         parts |= parts_of(element, value)
-    lines = lines_of((element for element, _ in wanted), None)
-    if not lines:
-        return []
     costs = Costs(codec, turnaround, writes=True)
+    requests: list[Request[None]] = []
+    for some in neighbourhoods((element for element, _ in wanted), codec, writes=True):
+        requests += _plan(lines_of(some, None), parts, costs)
+    return requests
+
+
+def _plan(lines: list[Line], parts: dict[Atom, int], costs: Costs) -> list[Request[None]]:
     edges = Edges(lines, costs)
     requests: list[Request[None]] = []
     mixed: list[Element] = []
-    for piece in least_path(edges.end, edges.of, costs.mixed_base, MAX_MIXED_WRITE_WORDS):
+    for piece in least_path(edges.end, edges.of, costs.mixed_base, max(1, costs.mixed_words)):
         if isinstance(piece, Run):
             requests.append(_write(parts, piece))
         else:
             mixed += piece
     return requests + [
         WriteMixed(tuple((element, value_of(element, parts)) for element in some))
-        for some in packed(mixed, MAX_MIXED_WRITE_WORDS)
+        for some in packed(mixed, costs.mixed_words)
     ]
 
 

@@ -21,6 +21,7 @@ from fatektool.errors import DataError
 from fatektool.program.files import read_bounded, write_whole
 from fatektool.program.image import PAGE_BYTES, Program, page_count
 from fatektool.program.plc_record import fault_of
+from fatektool.program.strict_json import read_json
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -141,20 +142,10 @@ def load_backup(path: Path) -> Backup:
 
 
 def _json(data: bytes, name: str) -> dict[str, Any]:
-    def pairs(items: list[tuple[str, Any]]) -> dict[str, Any]:
-        found = dict(items)
-        if len(found) != len(items):
-            raise ValueError("a key stands twice")
-        return found
-
-    def constant(text: str) -> Any:
-        raise ValueError(f"{text} is no JSON")
-
     try:
-        document = json.loads(data.decode(), object_pairs_hook=pairs, parse_constant=constant)
-    except (ValueError, RecursionError) as error:  # UnicodeDecodeError and JSONDecodeError among them
-        reason = "too deep" if isinstance(error, RecursionError) else error
-        raise DataError(f"{name}: not a backup file: {reason}", hint="is it the right file?") from error
+        document = read_json(data)
+    except ValueError as error:  # UnicodeDecodeError and JSONDecodeError among them
+        raise DataError(f"{name}: not a backup file: {error}", hint="is it the right file?") from error
     if not isinstance(document, dict) or document.get("schema") != SCHEMA:
         got = document.get("schema") if isinstance(document, dict) else type(document).__name__
         raise DataError(

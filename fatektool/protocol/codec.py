@@ -2,17 +2,24 @@
 
 A client holds one ``Codec`` and knows nothing else of the protocol it speaks, so that another
 protocol is another file.
+
+Most answers do not name their question. So a codec says how an answer that came late is told from the one
+that is waited for: by a number that it repeats (``numbers``), or, behind a *fence*, a request whose answer
+nothing that was asked before could have.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol, TypeVar
 
 from fatektool.errors import UsageError
 from fatektool.protocol.plc_errors import PROGRAM_COMMANDS
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from fatektool.protocol.commands import Command, Request
+    from fatektool.protocol.elements import Element
 
 A = TypeVar("A")
 
@@ -25,12 +32,14 @@ class Frame(NamedTuple):
         command: the command's code, known or not.
         data: what stands between command and checksum, error character included.
         raw: the frame as it came over the wire.
+        number: of the request, where answers repeat it; else 0.
     """
 
     station: int
     command: int
     data: bytes
     raw: bytes
+    number: int = 0
 
 
 class Decoder(Protocol):
@@ -72,18 +81,42 @@ class Codec(Protocol):
         """The bytes that a loopback (4E) may carry over any line that this protocol is spoken on."""
 
     @property
-    def data_bits(self) -> int:
-        """The fewest data bits of a serial line that carry its frames, 7 or 8."""
+    def data_bits(self) -> int | None:
+        """The fewest data bits of a serial line that carry its frames, 7 or 8; None if it is for networks."""
 
     @property
     def default_tcp_port(self) -> int | None:
         """The port of TCP and UDP unless one is named; None if no paper says one."""
 
+    @property
+    def last_station(self) -> int:
+        """The largest station that a PLC can have."""
+
+    @property
+    def numbers(self) -> int:
+        """How many requests differ by a number that their answers repeat; 1 if answers bear none."""
+
+    @property
+    def quiet_chars(self) -> float:
+        """How long a serial line must have been silent before a request, in characters."""
+
+    @property
+    def probe(self) -> Request[Any]:
+        """What every PLC answers at no cost, and no echo of it could be taken for the answer."""
+
     def decoder(self) -> Decoder:
         """A new decoder for one stream."""
 
-    def encode(self, station: int, request: Request[A]) -> bytes:
+    def code(self, request: Request[Any]) -> int:
+        """The command in the frames of this request and of its answers."""
+
+    def encode(self, station: int, request: Request[A], number: int = 0) -> bytes:
         """The request as one frame for this station.
+
+        Args:
+            station: 0 for all of them.
+            request: what is asked.
+            number: 0 to ``numbers`` less 1; its answer repeats it.
 
         Raises:
             UsageError: the request cannot be said in this protocol.
@@ -101,14 +134,42 @@ class Codec(Protocol):
 
         Raises:
             PlcRefused: an error code.
+            TransportTimeout: a gateway says that it got no answer.
             FrameError: no answer to this request, by length or content.
         """
+
+    def request_bytes(self, request: Request[A]) -> int:
+        """Length in bytes of the frame that asks this, wherever its elements lie."""
 
     def answer_bytes(self, request: Request[A]) -> int:
         """Length in bytes of the frame that answers this request; the likely one if it varies."""
 
+    def neighbourhood(self, element: Element, *, writes: bool) -> int:
+        """Which elements can share a run with this one: those of the same number.
+
+        Raises:
+            UsageError: the protocol cannot name this element; says what it can.
+        """
+
+    def most(self, symbol: str, *, writes: bool) -> int:
+        """How many elements of a kind a run (44 to 47) holds."""
+
+    def mixed_words(self, *, writes: bool) -> int:
+        """How many words a mixed request (48, 49) holds; 0 if there is none."""
+
     def echo_may_pass(self, request: Request[A]) -> bool:
         """True if the request's own echo could be taken for its answer."""
+
+    def shape(self, request: Request[Any]) -> bytes:
+        """What an answer shows of its request: fences avoid those of what was asked."""
+
+    def fence(self, nonce: bytes, asked: Collection[bytes]) -> Request[Any] | None:
+        """A request whose answer cannot be taken for that of any other; None if there is none left.
+
+        Args:
+            nonce: never the same twice.
+            asked: the shapes of the requests whose answers may still come.
+        """
 
 
 def require_commands(codec: Codec, *needed: Command) -> None:
@@ -124,6 +185,22 @@ def require_commands(codec: Codec, *needed: Command) -> None:
     if PROGRAM_COMMANDS.issuperset(missing):
         raise UsageError(
             f"{codec.name} has no program commands: its paper does not list {listed}",
-            hint="save the program with the vendor's software; 'fatektool snapshot --all' saves the data",
+            hint=_ANOTHER_WAY,
         )
     raise UsageError(f"{codec.name} has no such command: its paper does not list {listed}")
+
+
+_ANOTHER_WAY: Final = "save the program with the vendor's software; 'fatektool snapshot' saves the data"
+
+
+def require_station(codec: Codec, station: int) -> None:
+    """Check that a PLC can have this station, before anything is opened or sent.
+
+    Raises:
+        UsageError: it cannot.
+    """
+    if not 1 <= station <= codec.last_station:
+        raise UsageError(
+            f"station: expected 1 to {codec.last_station}, got {station}",
+            hint="0 is broadcast: no PLC answers it" if not station else f"{codec.name} has no others",
+        )

@@ -11,14 +11,15 @@ answer is the value it carries; a command that only acknowledges answers ``None`
     48 ReadMixed         49 WriteMixed        4E Loopback          4F ReadPage
     50 WritePage         53 ReadDetailedStatus
 
-Limits: FACON paper, section 4.2; the M-series paper has the same.
+Limits: FACON paper, section 4.2; the M-series paper has the same. How long a run may be differs from protocol
+to protocol: the codec checks it, these two by ``require_run_limit``.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import TYPE_CHECKING, ClassVar, Final, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Generic, TypeVar
 
 from fatektool.errors import UsageError
 from fatektool.protocol.status import BriefStatus, DetailedStatus, RawStatus
@@ -26,7 +27,7 @@ from fatektool.protocol.status import BriefStatus, DetailedStatus, RawStatus
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from fatektool.protocol.elements import Element
+    from fatektool.protocol.elements import Element, Kind
 
 A = TypeVar("A")
 
@@ -144,7 +145,7 @@ class ReadDisabled(Request[tuple[bool, ...]]):
 
 @dataclass(frozen=True, slots=True)
 class ReadDiscretes(Request[tuple[bool, ...]]):
-    """44: the state of 1 to 256 consecutive discretes."""
+    """44: the state of consecutive discretes: 1 to 256 in FACON."""
 
     first: Element
     count: int
@@ -156,7 +157,7 @@ class ReadDiscretes(Request[tuple[bool, ...]]):
 
 @dataclass(frozen=True, slots=True)
 class WriteDiscretes(Request[None]):
-    """45: set the state of 1 to 256 consecutive discretes."""
+    """45: set the state of consecutive discretes: 1 to 256 in FACON."""
 
     first: Element
     values: tuple[bool, ...]
@@ -169,7 +170,7 @@ class WriteDiscretes(Request[None]):
 
 @dataclass(frozen=True, slots=True)
 class ReadRegisters(Request[tuple[int, ...]]):
-    """46: consecutive words: 1 to 64 of 16 bits or 1 to 32 of 32 bits, unsigned."""
+    """46: consecutive words, unsigned: in FACON 1 to 64 of 16 bits or 1 to 32 of 32 bits."""
 
     first: Element
     count: int
@@ -181,7 +182,7 @@ class ReadRegisters(Request[tuple[int, ...]]):
 
 @dataclass(frozen=True, slots=True)
 class WriteRegisters(Request[None]):
-    """47: write consecutive words: 1 to 64 of 16 bits or 1 to 32 of 32 bits, unsigned."""
+    """47: write consecutive words, unsigned: in FACON 1 to 64 of 16 bits or 1 to 32 of 32 bits."""
 
     first: Element
     values: tuple[int, ...]
@@ -269,22 +270,40 @@ def _discrete(element: Element, command: Command) -> None:
         raise UsageError(f"{command.words} ({command:02X}) takes discretes (X Y M S T C), got {element}")
 
 
+def run_limit(kind: Kind) -> int:
+    """How many elements of a kind a run (43 to 47) of FACON and M-series holds."""
+    return MAX_DISCRETES if kind.bits == 1 else MAX_READ_WORDS // kind.words
+
+
+def require_run_limit(request: Request[Any]) -> None:
+    """Check a run against the limits of FACON and M-series; other requests have theirs in every protocol.
+
+    Raises:
+        UsageError: it is longer.
+    """
+    match request:
+        case ReadDisabled(first, count) | ReadDiscretes(first, count) | ReadRegisters(first, count):
+            _run(first, count, run_limit(first.kind), request.command)
+        case WriteDiscretes(first, values) | WriteRegisters(first, values):
+            _run(first, len(values), run_limit(first.kind), request.command)
+
+
 def _discrete_run(first: Element, count: int, command: Command) -> None:
     _discrete(first, command)
-    _run(first, count, MAX_DISCRETES, command)
+    _run(first, count, count, command)
 
 
 def _register_run(first: Element, count: int, command: Command) -> None:
-    kind = first.kind
-    if kind.bits == 1:
+    if first.kind.bits == 1:
         raise UsageError(f"{command.words} ({command:02X}) takes registers and words, got {first}")
-    _run(first, count, MAX_READ_WORDS // kind.words, command)
+    _run(first, count, count, command)
 
 
 def _run(first: Element, count: int, limit: int, command: Command) -> None:
     if not 1 <= count <= limit:
+        expected = f"1 to {limit}" if limit >= 1 else "1 or more"
         raise UsageError(
-            f"{command.words} ({command:02X}) from {first}: expected 1 to {limit} elements, got {count}"
+            f"{command.words} ({command:02X}) from {first}: expected {expected} elements, got {count}"
         )
     first.after(count - 1)  # raises if the last one is out of range
 

@@ -19,6 +19,7 @@ from fatektool.errors import FrameError, UsageError
 from fatektool.protocol import facon_data
 from fatektool.protocol.codec import Frame
 from fatektool.protocol.commands import Command
+from fatektool.protocol.fatek_commands import FatekCommands
 
 if TYPE_CHECKING:
     from fatektool.protocol.commands import Request
@@ -135,7 +136,7 @@ def parse_frame(raw: bytes) -> Frame:
     return Frame(station, command, raw[5:-3], raw)
 
 
-class FaconCodec:
+class FaconCodec(FatekCommands):
     """FACON ASCII as a ``Codec``."""
 
     name: Final = "facon"
@@ -148,8 +149,9 @@ class FaconCodec:
         """A new decoder for one stream."""
         return FaconDecoder()
 
-    def encode(self, station: int, request: Request[A]) -> bytes:
+    def encode(self, station: int, request: Request[A], number: int = 0) -> bytes:
         """The request as one frame for this station."""
+        del number  # a frame has no room for it
         return frame_bytes(station, request.command, facon_data.request_data(request))
 
     def parse_request(self, frame: Frame) -> Request[object]:
@@ -163,6 +165,10 @@ class FaconCodec:
     def encode_answer(self, station: int, request: Request[A], answer: A) -> bytes:
         """The frame in which a PLC gives this answer."""
         return frame_bytes(station, request.command, facon_data.answer_data(request, answer))
+
+    def request_bytes(self, request: Request[A]) -> int:
+        """Length of the frame that asks this, in bytes."""
+        return FRAMING_BYTES + len(facon_data.request_data(request))
 
     def answer_bytes(self, request: Request[A]) -> int:
         """Length of the frame that answers this request, in bytes."""

@@ -30,6 +30,7 @@ from fatektool.protocol.commands import (
     WriteMixed,
     WritePage,
     WriteRegisters,
+    require_run_limit,
 )
 from fatektool.protocol.facon_text import (
     CHARS,
@@ -265,7 +266,12 @@ _ERROR_CHARACTER_MAY_LACK: Final = {Command.READ_PAGE, Command.DETAILED_STATUS}
 
 
 def request_data(request: Request[A]) -> bytes:
-    """The data field of a request."""
+    """The data field of a request.
+
+    Raises:
+        UsageError: a run that is too long.
+    """
+    require_run_limit(request)
     return _FIELDS[request.command].request(request)
 
 
@@ -279,9 +285,11 @@ def parse_request(command: int, data: bytes) -> Request[object]:
     if fields is None:
         raise FrameError(f"command {command:02X} is not in the paper", raw=data)
     try:
-        return fields.parse_request(data)
+        request = fields.parse_request(data)
+        require_run_limit(request)
     except UsageError as error:
         raise FrameError(error.message, raw=data) from error
+    return request
 
 
 def answer_chars(request: Request[A]) -> int:

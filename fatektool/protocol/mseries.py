@@ -28,6 +28,7 @@ from typing import TYPE_CHECKING, Final, TypeVar
 from fatektool.errors import FrameError, UsageError
 from fatektool.protocol import mseries_data
 from fatektool.protocol.codec import Frame, require_commands
+from fatektool.protocol.fatek_commands import FatekCommands
 from fatektool.protocol.mseries_crc import crc_bytes
 
 if TYPE_CHECKING:
@@ -170,7 +171,7 @@ def parse_frame(raw: bytes) -> Frame:
     return Frame(raw[4], raw[5], raw[6:-4], raw)
 
 
-class MseriesCodec:
+class MseriesCodec(FatekCommands):
     """M-series binary as a ``Codec``."""
 
     name: Final = "mseries"
@@ -183,8 +184,9 @@ class MseriesCodec:
         """A new decoder for one stream."""
         return MseriesDecoder()
 
-    def encode(self, station: int, request: Request[A]) -> bytes:
+    def encode(self, station: int, request: Request[A], number: int = 0) -> bytes:
         """The request as one frame for this station."""
+        del number  # a frame has no room for it
         require_commands(self, request.command)
         return frame_bytes(QUERY, station, request.command, mseries_data.request_data(request))
 
@@ -203,6 +205,10 @@ class MseriesCodec:
     def encode_answer(self, station: int, request: Request[A], answer: A) -> bytes:
         """The frame in which a PLC gives this answer."""
         return frame_bytes(RESPONSE, station, request.command, mseries_data.answer_data(request, answer))
+
+    def request_bytes(self, request: Request[A]) -> int:
+        """Length of the frame that asks this, in bytes."""
+        return FRAMING_BYTES + MIN_PAYLOAD + len(mseries_data.request_data(request))
 
     def answer_bytes(self, request: Request[A]) -> int:
         """Length of the frame that answers this request, in bytes; of 53 that of FACON's 64 bytes."""

@@ -28,6 +28,7 @@ from fatektool.protocol.commands import (
     WriteDiscretes,
     WriteMixed,
     WriteRegisters,
+    require_run_limit,
 )
 from fatektool.protocol.mseries_bytes import (
     VALUE_BYTES,
@@ -235,8 +236,9 @@ def request_data(request: Request[A]) -> bytes:
     """The data field of a request of one of ``COMMANDS``.
 
     Raises:
-        UsageError: an element that would be taken for another.
+        UsageError: a run that is too long, or an element that would be taken for another.
     """
+    require_run_limit(request)
     return _FIELDS[request.command].request(request)
 
 
@@ -250,9 +252,11 @@ def parse_request(command: int, data: bytes) -> Request[object]:
     if fields is None:
         raise FrameError(f"command {command:02X} is not in the M-series paper", raw=data)
     try:
-        return fields.parse_request(data)
+        request = fields.parse_request(data)
+        require_run_limit(request)
     except UsageError as error:
         raise FrameError(error.message, raw=data) from error
+    return request
 
 
 def answer_size(request: Request[A]) -> int:

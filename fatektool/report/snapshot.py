@@ -63,7 +63,7 @@ def bounded(count: int, which: str) -> Html | str:
 
 
 def mode_of(document: Mapping[str, Any] | None) -> str:
-    """RUN or STOP, as a document says; a dash for none."""
-    if document is None:
+    """RUN or STOP, as a document says; a dash for none, and where the protocol does not tell."""
+    if document is None or document["running"] is None:
         return DASH
     return "RUN" if document["running"] else "STOP"

@@ -31,6 +31,9 @@ if TYPE_CHECKING:
     from fatektool.simulator.models import Model
 
 INPUT_REGISTERS = range(3840, 3904)
+LONG_COUNTERS = range(200, 256)
+"""They have 32 bits: their low words are among the counters' registers, their high words beside them."""
+
 _PACKED_MULTIPLE = 8
 _ASCII_BIT = bytes.maketrans(b"\x00\x01", b"01")
 
@@ -68,6 +71,7 @@ class Memory:
             "F": _zeros(model.f_registers),
             "RT": _zeros(model.timers),
             "RC": _zeros(model.counters),
+            "RC high": _zeros(max(0, model.counters - LONG_COUNTERS.start)),
         }
         self.revision = 0
         self._sizes = counts | {area: len(table) for area, table in self.registers.items()}
@@ -137,6 +141,24 @@ class Memory:
                 values = [half for value in values for half in (value & 0xFFFF, value >> 16)]
             self._store_registers(kind.area, address, end, values)
         self.revision += 1
+
+    def read_long_counters(self, first: int, count: int) -> list[int]:
+        """Words of the counters of 32 bits, low word first, counted from that of C200."""
+        return [table[at] for table, at in self._long_counters(first, count)]
+
+    def write_long_counters(self, first: int, values: Sequence[int]) -> None:
+        """Write words of the counters of 32 bits."""
+        for (table, at), value in zip(self._long_counters(first, len(values)), values, strict=True):
+            table[at] = value
+        self.revision += 1
+
+    def _long_counters(self, first: int, count: int) -> list[tuple[array[int], int]]:
+        highs, lows = self.registers["RC high"], self.registers["RC"]
+        if first < 0 or first + count > 2 * len(highs):
+            raise Refusal(RefusalCode.ILLEGAL_ADDRESS)
+        start = LONG_COUNTERS.start
+        places = (divmod(word, 2) for word in range(first, first + count))
+        return [(highs, counter) if high else (lows, start + counter) for counter, high in places]
 
     def read_mixed(self, elements: Iterable[tuple[str, int]]) -> list[int]:
         """Values of elements of any kind."""

@@ -221,6 +221,17 @@ class SimulatedPlc:
         else:
             self.memory.write_words(symbol, address, values)
 
+    def read_long_counters(self, first: int, count: int) -> list[int]:
+        """Words of C200 and on, which have 32 bits, low word first, counted from that of C200."""
+        return self.memory.read_long_counters(first, count)
+
+    def write_long_counters(self, first: int, values: Sequence[int]) -> None:
+        """Write words of C200 and on."""
+        if self.acknowledge_only:
+            self.memory.read_long_counters(first, len(values))
+        else:
+            self.memory.write_long_counters(first, values)
+
     def read_mixed(self, elements: Iterable[tuple[str, int]]) -> list[int]:
         """Values of elements of any kind: (symbol, address)."""
         return self.memory.read_mixed(elements)

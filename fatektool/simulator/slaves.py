@@ -9,12 +9,15 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from fatektool.simulator.facon_slave import FaconSlave
 from fatektool.simulator.line import BITS_PER_CHAR
+from fatektool.simulator.modbus_frame import AsciiFraming, RtuFraming, TcpFraming
+from fatektool.simulator.modbus_slave import ModbusSlave
 from fatektool.simulator.models import DEFAULT_MODEL
 from fatektool.simulator.mseries_slave import MSeriesSlave
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
+    from fatektool.simulator.modbus_frame import Framing
     from fatektool.simulator.plc import SimulatedPlc
     from fatektool.simulator.slave import Slave
 
@@ -45,8 +48,19 @@ def _mseries(plcs: Mapping[int, SimulatedPlc], *, error_character: bool = True) 
     return MSeriesSlave(plcs)
 
 
+def _modbus(make_framing: Callable[[], Framing]) -> MakeSlave:
+    def make(plcs: Mapping[int, SimulatedPlc], *, error_character: bool = True) -> ModbusSlave:
+        del error_character
+        return ModbusSlave(plcs, make_framing())
+
+    return make
+
+
 SLAVES: dict[str, Spoken] = {
     "facon": Spoken(FaconSlave, DEFAULT_MODEL, BITS_PER_CHAR),
     "mseries": Spoken(_mseries, "m-series", 11),
+    "modbus-rtu": Spoken(_modbus(RtuFraming), "fbs-20mc", 11),
+    "modbus-ascii": Spoken(_modbus(AsciiFraming), "fbs-20mc", 10),
+    "modbus-tcp": Spoken(_modbus(TcpFraming), "fbs-20mc", 11),
 }
 DEFAULT_PROTOCOL = "facon"

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
 SCHEMA = "fatektool.simulator/1"
+_MAX_FILE = 64 << 20  # some hundred kilobytes a PLC, of which there are 254 at most
 _EMPTY_PAGE = b"\xff" * PAGE_BYTES
 _PAGE = re.compile(f"[0-9A-Fa-f]{{{2 * PAGE_BYTES}}}")
 _PLC_KEYS = ("station", "model", "ladder_words", "flags", "on", "disabled", "inputs", "registers", "pages")
@@ -64,11 +65,14 @@ class StateFile:
     def load(self) -> list[SimulatedPlc] | None:
         """The PLCs in the file; None if there is none yet."""
         try:
-            content = self.path.read_bytes()
+            with self.path.open("rb") as file:
+                content = file.read(_MAX_FILE + 1)
         except FileNotFoundError:
             return None
         except OSError as error:
             raise DataError(f"{self.path}: cannot be read: {error.strerror}") from error
+        if len(content) > _MAX_FILE:
+            raise DataError(f"{self.path}: expected at most {_MAX_FILE} bytes, got more")
         plcs = parse_state(content, str(self.path))
         self._saved_revision = tuple(plc.revision for plc in plcs)
         return plcs
@@ -83,7 +87,8 @@ class StateFile:
         temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
         try:
             try:
-                temporary.write_text(dump_state(plcs.values()), encoding="ascii")
+                with open(temporary, "w", encoding="ascii", opener=_private) as file:
+                    file.write(dump_state(plcs.values()))
                 temporary.replace(target)
             except BaseException:
                 temporary.unlink(missing_ok=True)
@@ -92,6 +97,11 @@ class StateFile:
             raise DataError(f"{self.path}: cannot be written: {error.strerror}") from error
         self._saved_revision = revision
         return True
+
+
+def _private(path: str, flags: int) -> int:
+    """A program lies in it: for its owner and the group, as a backup is."""
+    return os.open(path, flags, 0o640)
 
 
 def _plc_to_json(plc: SimulatedPlc) -> dict[str, Any]:
@@ -123,6 +133,14 @@ def _addresses(tables: Mapping[str, bytearray]) -> dict[str, list[int]]:
     }
 
 
+def _once_each(items: list[tuple[str, Any]]) -> dict[str, Any]:
+    """An object; one in which a key stands twice says two things."""
+    found = dict(items)
+    if len(found) != len(items):
+        raise ValueError
+    return found
+
+
 class _Reader:
     """Checks a document part by part; every complaint names the file."""
 
@@ -131,7 +149,7 @@ class _Reader:
 
     def plcs(self, text: str | bytes) -> list[SimulatedPlc]:
         try:
-            document = json.loads(text)
+            document = json.loads(text, object_pairs_hook=_once_each)
         except (ValueError, RecursionError):
             self._fail("is no JSON document")
         if not isinstance(document, dict) or document.get("schema") != SCHEMA:
@@ -154,7 +172,7 @@ class _Reader:
         station = self._number(part["station"], range(1, MAX_STATION + 1), "station")
         model = MODELS.get(part["model"]) if isinstance(part["model"], str) else None
         if model is None:
-            self._fail(f"station {station}: no model {part['model']!r}")
+            self._fail(f"station {station}: no model {part['model']!r:.60}")
         words = self._number(part["ladder_words"], range(1, MAX_LADDER_WORDS + 1), "ladder_words")
         model = replace(model, ladder_words=words)
         pages = [_EMPTY_PAGE] * model.page_count
@@ -188,7 +206,7 @@ class _Reader:
         for key, value in part.items():
             # The plainest spelling alone, so that one address cannot be there twice.
             if not (key.isascii() and key.isdigit() and len(key) <= len(str(size)) and str(int(key)) == key):
-                self._fail(f"{what}: {key!r} is no address")
+                self._fail(f"{what}: {key!r:.60} is no address")
             entries.append((self._number(int(key), range(size), what), value))
         return entries
 
@@ -206,12 +224,13 @@ class _Reader:
     def _number(self, value: Any, allowed: range, what: str) -> int:
         # True is an int to Python, and no number in a document.
         if not isinstance(value, int) or isinstance(value, bool) or value not in allowed:
-            self._fail(f"{what}: expected {allowed.start} to {allowed.stop - 1}, got {value!r}")
+            self._fail(f"{what}: expected {allowed.start} to {allowed.stop - 1}, got {value!r:.60}")
         return value
 
     def _keys(self, part: Mapping[str, Any], expected: tuple[str, ...], what: str) -> None:
         if part.keys() != set(expected):
-            self._fail(f"{what} has the keys {', '.join(part) or 'none'}, expected {', '.join(expected)}")
+            found = ", ".join(f"{key!r:.40}" for key in list(part)[: len(expected) + 1]) or "none"
+            self._fail(f"{what} has the keys {found}, expected {', '.join(expected)}")
 
     def _fail(self, fault: str) -> NoReturn:
         raise DataError(f"{self._name}: {fault}", file=self._name)

@@ -3,7 +3,10 @@
 Frames of two programs on one line would answer each other's questions, so a port or gateway is used by one
 process at a time. The lock is the operating system's (``flock``; on Windows a locked byte), on a small file
 whose content names the holder for the one who waits. It goes with the process, however that ends: a file left
-behind means nothing, and cron is never stopped by one.
+behind stops nobody, and cron is never held up by one.
+
+What it says when the lock is free tells one thing: the holder before was killed, or left without the answer
+to its last request. That answer may still come, to whoever is next: ``found_doubt`` is True then.
 
 The file is made for all users to lock: one port, one file, whoever asks.
 """
@@ -17,6 +20,7 @@ import os
 import re
 import sys
 import tempfile
+import threading
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -74,6 +78,10 @@ class PortLock:
         digest = hashlib.sha256(resource.encode(errors="surrogateescape")).hexdigest()[:10]
         self.path = lock_folder() / f"fatektool-{readable}-{digest}.lock"
         self._descriptor: int | None = None
+        self.found_doubt = False
+        """True, once taken, if the holder before may have left an answer on its way."""
+        self.leaves_doubt = False
+        """Set by the holder: the same of itself."""
 
     def acquire(self) -> None:
         """Take the lock, waiting if need be.
@@ -90,8 +98,9 @@ class PortLock:
     def release(self) -> None:
         """Give the lock back; again is fine."""
         if self._descriptor is not None:
-            with contextlib.suppress(OSError):
-                os.ftruncate(self._descriptor, 0)
+            if not self.leaves_doubt:
+                with contextlib.suppress(OSError):
+                    os.ftruncate(self._descriptor, 0)
             os.close(self._descriptor)
             self._descriptor = None
             _held.discard(str(self.path))
@@ -110,7 +119,10 @@ class PortLock:
         self._descriptor = descriptor
         _held.add(str(self.path))
         with contextlib.suppress(OSError):  # another user's file is locked without being written
+            left = os.read(descriptor, 1)
+            os.lseek(descriptor, 0, os.SEEK_SET)
             os.ftruncate(descriptor, 0)
+            self.found_doubt = bool(left)
             os.write(descriptor, f"{os.getpid()}\n".encode())
         return True
 
@@ -118,20 +130,36 @@ class PortLock:
         flags = os.O_RDWR | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_CLOEXEC", 0)
         try:
             try:
-                descriptor = os.open(self.path, flags | os.O_CREAT | os.O_EXCL, 0o666)
-                with contextlib.suppress(OSError, AttributeError):
-                    os.fchmod(descriptor, 0o666)  # the umask would keep other users out
-            except FileExistsError:
-                try:
-                    descriptor = os.open(self.path, flags)
-                except PermissionError:
-                    descriptor = os.open(self.path, flags & ~os.O_RDWR)
+                return os.open(self.path, flags)
+            except FileNotFoundError:
+                self._make(flags)
+                return os.open(self.path, flags)
+            except PermissionError:
+                return os.open(self.path, flags & ~os.O_RDWR)
         except OSError as error:
             raise UsageError(
                 f"cannot make the lock file {self.path}: {error.strerror}",
                 hint="name another folder in FATEKTOOL_LOCK_DIR",
             ) from error
-        return descriptor
+
+    def _make(self, flags: int) -> None:
+        """Make the file under another name first, so that it is for all users as soon as it has its own.
+
+        The umask would keep other users out, and this process may be killed before it has set that right.
+        """
+        new = self.path.with_name(f"{self.path.name}.{os.getpid()}-{threading.get_ident()}")
+        descriptor = os.open(new, flags | os.O_CREAT | os.O_EXCL, 0o666)
+        try:
+            with contextlib.suppress(OSError, AttributeError):
+                os.fchmod(descriptor, 0o666)
+            os.close(descriptor)
+            with contextlib.suppress(FileExistsError):  # somebody else was faster
+                os.link(new, self.path)
+        except OSError:  # a file system without hard links
+            with contextlib.suppress(FileExistsError):
+                os.close(os.open(self.path, flags | os.O_CREAT | os.O_EXCL, 0o666))
+        finally:
+            new.unlink(missing_ok=True)
 
     def holder(self) -> int | None:
         """The process that holds the lock, as far as its file tells."""

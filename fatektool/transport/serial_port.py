@@ -4,6 +4,10 @@ A device on Linux or macOS is read and written through its file descriptor, wait
 pyserial's time-out anew for each read would reconfigure the port each time. Other ports (Windows, URLs) keep
 one short time-out for good, and longer ones are made of it.
 
+pyserial has parity sent, but not checked in what comes. So the driver is asked to check it: a byte with a
+wrong one is then read as 00, and its frame is none. The 8-bit checksum alone lets one damaged answer in some
+hundred pass.
+
 A pseudo terminal has neither parity nor 7 bits, and Linux refuses such a format from its second opening
 on, so it is opened as 8N1, at the speed asked for: nothing is lost, as a pty's bytes pass whole.
 """
@@ -53,6 +57,8 @@ def open_serial(
         except (ValueError, OSError, NotImplementedError) as error:
             note(f"{target}: the driver has no low latency mode: {error}")
     if hasattr(port, "fd") and os.name == "posix" and "://" not in target:  # spy:// wants to be asked
+        if not (pty or check_parity(port.fd, line)):
+            note(f"{target}: the driver does not check the parity of what it receives")
         return DeviceTransport(target, line, port, pty=pty)
     return SerialTransport(target, line, port)
 
@@ -78,6 +84,29 @@ def _set_line(target: str, line: LineSettings, port: Any) -> None:
         if type(error).__name__ != "error" and "://" not in target:
             raise
         raise _open_error(target, line, error) from error
+
+
+def check_parity(descriptor: int, line: LineSettings) -> bool:
+    """Have the driver check the parity of what it receives, or leave that if the line has none.
+
+    Args:
+        descriptor: of an open port.
+        line: its speed and format.
+
+    Returns:
+        False if the driver cannot.
+    """
+    import termios
+
+    try:
+        settings = termios.tcgetattr(descriptor)
+        settings[0] &= ~(termios.INPCK | termios.IGNPAR | termios.PARMRK)
+        if line.parity != "N":
+            settings[0] |= termios.INPCK
+        termios.tcsetattr(descriptor, termios.TCSANOW, settings)
+    except termios.error:
+        return False
+    return True
 
 
 def _set_dtr(port: Any, *, on: bool) -> bool:
@@ -275,6 +304,8 @@ class DeviceTransport(Transport):
     def set_line(self, line: LineSettings) -> None:
         """Take another speed and format; of a pty, the speed alone."""
         _set_line(self.name, _of_pty(line) if self._pty else line, self._port)
+        if not self._pty:  # pyserial has just turned it off
+            check_parity(self._descriptor, line)
         self.line = str(line)
 
     def set_dtr(self, *, on: bool) -> bool:

@@ -17,6 +17,7 @@ A record is written when it is complete: a program that dies keeps all but the l
 from __future__ import annotations
 
 import json
+import os
 import struct
 import time
 from contextlib import contextmanager
@@ -105,11 +106,16 @@ def open_trace(path: Path, protocol: str) -> TraceWriter:
     if suffix not in {".pcap", ".ndjson"}:
         raise UsageError(f"trace {path}: expected a name that ends in .pcap or .ndjson")
     try:
-        file = path.open("wb")
+        file = open(path, "wb", opener=_private)  # noqa: SIM115  # the writer closes it
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise UsageError(f"cannot write the trace {path}: {reason}") from error
     return PcapTrace(file, protocol) if suffix == ".pcap" else NdjsonTrace(file, protocol)
+
+
+def _private(path: str, flags: int) -> int:
+    """A program may be read in a trace: it is for its owner and the group, as backups are."""
+    return os.open(path, flags, 0o640)
 
 
 def time_text(time_ns: int) -> str:

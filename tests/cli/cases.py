@@ -35,14 +35,20 @@ ANSWERS = """\
 0 mode: run -p PLC [running]
 0 mode: stop -p PLC --yes [running]
 0 mode: stop -p PLC
+0 broadcast: run -p PLC -s 0 --broadcast --yes
 0 loopback: loopback -p PLC --count 24
 0 loopback: loopback -p PLC --duration 0.01 --sizes 0,256 --pattern random --seed 7 --max-p99 1000
 1 loopback: loopback -p PLC -s 9 --count 2 --timeout 0.01
+1 loopback: loopback -p PLC --raw 02,03 --count 2 --timeout 0.01
 0 doctor: doctor -p PLC
 1 doctor: doctor -p PLC [battery_low]
 1 doctor: doctor -p PLC -s 9 --timeout 0.01
 0 scan: scan -p PLC --stations 1-3,7 --timeout 0.01
 0 ports: ports
+0 link-ports: link ports -p PLC
+0 link-result: link result R0 -p PLC
+0 link-table: link table show R0 --kind md0 -p PLC
+1 link-table: link table show R0 --kind mbus --check -p PLC
 0 decode: decode 02 30 31 34 30 43 37 03
 0 schemas: schema
 """
@@ -116,12 +122,28 @@ ERRORS = r"""
     no terminal to ask on: nothing was done; add --yes
 2 stop -p PLC [running]
     add --yes
+2 stop -p PLC -s 0 --broadcast
+    add --yes
+2 stop -p PLC -s 0 --yes
+    0 is every PLC on the line, and none answers: add --broadcast
+2 stop -p PLC --broadcast --yes
+    expected station 0, got 1; add -s 0
+2 status -p PLC -s 0 --broadcast
+    No such option
+2 run -p PLC --yes --read-only
+    'fatektool run' writes: this line is read-only, and nothing was sent
 2 decode hello
     'hello' is neither hex digits in pairs nor a trace
 2 decode LONG
     neither hex
 2 loopback -p PLC --sizes 257
-    257 is not in the range 0<=x<=256
+    loopback sizes: expected 0 to 256 characters, got 257
+2 loopback -p PLC --raw 02,03 --sizes 510
+    loopback sizes: expected 0 to 509 characters, got 510
+2 loopback -p PLC --raw none,none --sizes 0
+    loopback sizes: expected 1 to 511 characters, got 0
+2 loopback -p PLC --raw 02
+    raw frame '02': expected START,END as bytes in hex, such as 02,03
 2 loopback -p PLC --sizes 1,x
     'x' is not a valid integer
 2 loopback -p PLC --pattern zeros

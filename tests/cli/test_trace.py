@@ -41,7 +41,9 @@ snapshot R0-R9
 watch R1 --count 2 --interval 0.01
 loopback --count 3
 doctor
+link ports
 scan --stations 1-2 --timeout 0.01
+check --expect any --reference old.json
 """
 
 

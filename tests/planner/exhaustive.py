@@ -26,7 +26,7 @@ from fatektool.protocol.commands import (
     WriteMixed,
     WriteRegisters,
 )
-from fatektool.protocol.elements import Element
+from fatektool.protocol.elements import KINDS, Element
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -47,15 +47,43 @@ class Places(NamedTuple):
 
 
 class Caps(NamedTuple):
-    """What one request holds: discretes of 44 and 45, words of 46 and 47, words of 48 or 49."""
+    """What one request holds: discretes of 44 and 45, words of 46 and 47, words of 48 or 49, 0 for none."""
 
     discretes: int = 256
     words: int = 64
     mixed: int = 64
+    packs: bool = False  # words of discretes are counted as their discretes
 
 
 READ_CAPS = Caps()
 WRITE_CAPS = Caps(mixed=32)
+
+
+class Limited:
+    """A codec whose requests hold less, so that a few elements meet every limit."""
+
+    def __init__(self, codec: Codec, read: Caps, write: Caps) -> None:
+        self._codec = codec
+        self._caps = {False: read, True: write}
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._codec, name)
+
+    def most(self, symbol: str, *, writes: bool) -> int:
+        return most(symbol, self._caps[writes])
+
+    def mixed_words(self, *, writes: bool) -> int:
+        return self._caps[writes].mixed
+
+
+def most(symbol: str, caps: Caps) -> int:
+    """How many elements of a kind a run holds."""
+    bits = KINDS[symbol].bits
+    if bits == 1:
+        return caps.discretes
+    if caps.packs and "W" in symbol:
+        return caps.discretes // bits
+    return caps.words // (2 if bits == 32 else 1)
 
 
 class Piece(NamedTuple):
@@ -117,10 +145,12 @@ class _World:
         self._all = {place for one in self._each for place in one.each()}
         self._sizes: dict[tuple[str, int], float] = {}
         self.everything = (1 << len(self._each)) - 1
-        self.mixed_base = self._wire(self._mixed("R", 1)) - self._item("R") + turnaround
+        self.mixed_base = 0.0
+        if caps.mixed:
+            self.mixed_base = self._wire(self._mixed("R", 1)) - self._item("R") + turnaround
 
     def _wire(self, request: Request[Any]) -> float:
-        return len(self._codec.encode(1, request)) + self._codec.answer_bytes(request)
+        return self._codec.request_bytes(request) + self._codec.answer_bytes(request)
 
     def _mixed(self, symbol: str, count: int) -> Request[Any]:
         element = Element(symbol, 0)
@@ -182,15 +212,14 @@ class _World:
 
     def _from(self, symbol: str, first: int, last: int) -> Iterator[Piece]:
         words = 2 if symbol in {"DRT", "DRC", "DR", "DD", "DF"} or symbol.startswith("DW") else 1
-        most = self._caps.discretes if symbol in set("XYMSTC") else self._caps.words // words
-        for count in range(1, most + 1):
+        for count in range(1, most(symbol, self._caps) + 1):
             try:
                 Element(symbol, first).after(count - 1)
             except UsageError:
                 return
             covered = places(symbol, first, count)
             holds = self._holds(covered)
-            if holds and count == 1:
+            if holds and count == 1 and self._caps.mixed:
                 yield Piece(holds, self._size(symbol, 0), words)
             if holds:
                 yield Piece(holds, self._size(symbol, count), 0)
@@ -246,7 +275,8 @@ def _least(world: _World, capacity: int, *, once: bool) -> float:
                 total = words + piece.words
                 after[total] = min(cost + piece.cost, after.get(total, inf))
     return min(
-        cost + world.mixed_base * ceil(words / capacity) for words, cost in found[world.everything].items()
+        cost + world.mixed_base * ceil(words / max(1, capacity))
+        for words, cost in found[world.everything].items()
     )
 
 

@@ -13,7 +13,7 @@ from fatektool.planner import plan_reads, plan_writes
 from fatektool.protocol.facon import FACON
 from fatektool.protocol.mseries import MSERIES
 
-from .exhaustive import Caps, least_read, least_write, wire_bytes
+from .exhaustive import Caps, Limited, least_read, least_write, wire_bytes
 from .sets import TURNAROUNDS, apart, element_sets, named, scattered, side_by_side, small_set
 
 if TYPE_CHECKING:
@@ -61,25 +61,21 @@ def test_any_set(elements: list[Element], codec: str, turnaround: float) -> None
 @codecs
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("caps", [(4, 40, 4, 2), (8, 64, 6, 4)], ids=["4 words", "8 words"])
-def test_where_requests_are_full(
-    codec: Codec, seed: int, caps: tuple[int, int, int, int], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_where_requests_are_full(codec: Codec, seed: int, caps: tuple[int, int, int, int]) -> None:
     """With requests that hold little, a few elements meet every limit."""
     words, discretes, mixed, mixed_write = caps
-    monkeypatch.setattr("fatektool.planner.edges.MAX_READ_WORDS", words)
-    monkeypatch.setattr("fatektool.planner.edges.MAX_DISCRETES", discretes)
-    monkeypatch.setattr("fatektool.planner.reads.MAX_READ_WORDS", mixed)
-    monkeypatch.setattr("fatektool.planner.writes.MAX_MIXED_WRITE_WORDS", mixed_write)
+    read, write = Caps(discretes, words, mixed), Caps(discretes, words, mixed_write)
+    codec = Limited(codec, read, write)
     random = Random(seed)  # noqa: S311
     for _ in range(20):
         elements = random.choice((small_set, side_by_side))(random, 14)
         turnaround = random.choice(TURNAROUNDS)
         assert reads_cost(elements, codec, turnaround) == pytest.approx(
-            least_read(elements, codec, turnaround, caps=Caps(discretes, words, mixed))
+            least_read(elements, codec, turnaround, caps=read)
         ), f"read {' '.join(map(str, elements))} at {turnaround}"
         written = apart(elements)
         assert writes_cost(written, codec, turnaround) == pytest.approx(
-            least_write(written, codec, turnaround, caps=Caps(discretes, words, mixed_write))
+            least_write(written, codec, turnaround, caps=write)
         ), f"write {' '.join(map(str, written))} at {turnaround}"
 
 

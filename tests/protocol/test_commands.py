@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from fatektool.errors import UsageError
+from fatektool.errors import FrameError, UsageError
 from fatektool.protocol.commands import (
     COMMAND_WORDS,
     Command,
@@ -29,8 +29,9 @@ from fatektool.protocol.commands import (
 )
 from fatektool.protocol.elements import Element
 from fatektool.protocol.facon import FACON, frame_bytes
+from fatektool.protocol.mseries import MSERIES
 
-from .decoding import one_frame
+from .decoding import one_frame, query
 
 X0, Y0, R0, DR0, WM0, DWM0 = (Element.parse(text) for text in ("X0", "Y0", "R0", "DR0", "WM0", "DWM0"))
 PAGE = bytes(range(128))
@@ -91,20 +92,37 @@ def test_discretes_only(wrong: Element) -> None:
         ControlDiscrete(Control.SET, wrong)
 
 
-@pytest.mark.parametrize("count", [0, -1, 257])
-def test_how_many_discretes(count: int) -> None:
+def too_long(request: Request[Any], expected: str) -> None:
+    """How long a run may be is the protocol's to say: it refuses to write the request, or to read it."""
+    for codec in (FACON, MSERIES):
+        with pytest.raises(UsageError, match=expected):
+            codec.encode(1, request)
+
+
+@pytest.mark.parametrize("count", [0, -1])
+def test_a_run_is_of_one_element_at_least(count: int) -> None:
     for make in (ReadDisabled, ReadDiscretes):
-        assert make(X0, 1).count == 1
-        assert make(X0, 256).count == 256
-        with pytest.raises(UsageError, match=rf"from X0: expected 1 to 256 elements, got {count}"):
+        with pytest.raises(UsageError, match=rf"from X0: expected 1 or more elements, got {count}"):
             make(X0, count)
+    with pytest.raises(UsageError, match="from Y0: expected 1 or more elements, got 0"):
+        WriteDiscretes(Y0, ())
+    with pytest.raises(UsageError, match="from R0: expected 1 or more elements, got 0"):
+        WriteRegisters(R0, ())
 
 
-def test_how_many_discretes_to_write() -> None:
-    assert len(WriteDiscretes(Y0, (True,) * 256).values) == 256
-    for count in (0, 257):
-        with pytest.raises(UsageError, match=f"expected 1 to 256 elements, got {count}"):
-            WriteDiscretes(Y0, (True,) * count)
+def test_how_many_discretes() -> None:
+    for make in (ReadDisabled, ReadDiscretes):
+        assert FACON.encode(1, make(X0, 256))
+        too_long(make(X0, 257), "from X0: expected 1 to 256 elements, got 257")
+    assert FACON.encode(1, WriteDiscretes(Y0, (True,) * 256))
+    too_long(WriteDiscretes(Y0, (True,) * 257), "expected 1 to 256 elements, got 257")
+
+
+def test_a_frame_of_more_than_that_is_no_request() -> None:
+    with pytest.raises(FrameError, match="expected 1 to 64 elements, got 65"):
+        FACON.parse_request(one_frame(frame_bytes(1, 0x46, b"41R00000")))
+    with pytest.raises(FrameError, match="expected 1 to 64 elements, got 65"):
+        MSERIES.parse_request(one_frame(query("01 46 41 52 00 00"), MSERIES))
 
 
 def test_256_is_written_00() -> None:
@@ -139,22 +157,16 @@ def test_a_run_ends_within_its_kind() -> None:
 def test_64_words_of_16_bits(first: Element) -> None:
     assert FACON.encode(1, ReadRegisters(first, 64))[5:7] == b"40"
     assert len(FACON.encode(1, WriteRegisters(first, (0xFFFF,) * 64))) == 8 + 2 + 6 + 256
-    for count in (0, 65):
-        with pytest.raises(UsageError, match=f"expected 1 to 64 elements, got {count}"):
-            ReadRegisters(first, count)
-        with pytest.raises(UsageError, match=f"expected 1 to 64 elements, got {count}"):
-            WriteRegisters(first, (0,) * count)
+    too_long(ReadRegisters(first, 65), "expected 1 to 64 elements, got 65")
+    too_long(WriteRegisters(first, (0,) * 65), "expected 1 to 64 elements, got 65")
 
 
 @pytest.mark.parametrize("first", [DR0, DWM0, Element("DRC", 0), Element("DD", 0)], ids=str)
 def test_32_words_of_32_bits(first: Element) -> None:
     assert FACON.encode(1, ReadRegisters(first, 32))[5:7] == b"20"
     assert len(FACON.encode(1, WriteRegisters(first, (0xFFFFFFFF,) * 32))) == 8 + 2 + 7 + 256
-    for count in (0, 33):
-        with pytest.raises(UsageError, match=f"expected 1 to 32 elements, got {count}"):
-            ReadRegisters(first, count)
-        with pytest.raises(UsageError, match=f"expected 1 to 32 elements, got {count}"):
-            WriteRegisters(first, (0,) * count)
+    too_long(ReadRegisters(first, 33), "expected 1 to 32 elements, got 33")
+    too_long(WriteRegisters(first, (0,) * 33), "expected 1 to 32 elements, got 33")
 
 
 def test_registers_only() -> None:

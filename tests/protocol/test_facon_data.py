@@ -82,7 +82,7 @@ def test_every_command_is_drawn() -> None:
         (0x45, b"02Y0000101", "expected 2 values, got 3"),
         (0x45, b"02Y000012", "expected 0 or 1 for each discrete"),
         (0x45, b"00Y0000" + 255 * b"1", "expected 256 values, got 255"),
-        (0x46, b"00R00000", "expected 1 to 64 elements, got 0"),
+        (0x46, b"00R00000", "expected 1 or more elements, got 0"),
         (0x46, b"41R00000", "expected 1 to 64 elements, got 65"),
         (0x46, b"21DR00000", "expected 1 to 32 elements, got 33"),
         (0x46, b"01X0000", "takes registers"),

@@ -131,7 +131,7 @@ def test_the_longest_symbol_is_taken() -> None:
         (0x45, "02 59 00 00 01 00 01", "expected 2 values, got 3"),
         (0x45, "01 59 00 00 02", "expected 00 or 01 for each discrete"),
         (0x45, "00 59 00 00" + 255 * "01", "expected 256 values, got 255"),
-        (0x46, "00 52 00 00", "expected 1 to 64 elements, got 0"),
+        (0x46, "00 52 00 00", "expected 1 or more elements, got 0"),
         (0x46, "41 52 00 00", "expected 1 to 64 elements, got 65"),
         (0x46, "21 44 52 00 00", "expected 1 to 32 elements, got 33"),
         (0x46, "01 58 00 00", "takes registers"),

@@ -1,0 +1,61 @@
+"""What makes a backup one to rely on: there is a program in it, it is whole, and it is not too old."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, Final
+
+from fatektool.errors import DataError, UsageError
+from fatektool.program.archive import load_backup
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from fatektool.program.archive import Backup
+    from fatektool.program.image import Program
+
+_BACKUP: Final = b'"fatektool.backup/'
+_LOOKED_AT: Final = 200
+
+
+def require_ladder(program: Program) -> None:
+    """Refuse an image that has lost its ladder: behind a header that holds, one byte all over.
+
+    A PLC whose memory was lost gives such an image; kept by night, it would push the good backup out.
+
+    Raises:
+        DataError: there is no ladder in it.
+    """
+    ladder = program.data[len(program.pages[0]) :]
+    if ladder == ladder[:1] * len(ladder):
+        raise DataError(
+            f"the program is empty: every byte of its ladder is {ladder[0]:02X}",
+            hint="has the PLC lost its memory? 'fatektool backup' keeps an image that is meant to be empty",
+        )
+
+
+def former_hash(path: Path) -> str | None:
+    """The hash of the program in the backup that is about to be replaced; None if there is no file.
+
+    Raises:
+        DataError: it is damaged.
+        UsageError: it is no backup at all, and must not be replaced.
+    """
+    if not path.exists():
+        return None
+    try:
+        return load_backup(path).program.sha256
+    except DataError as error:
+        with path.open("rb") as file:
+            start = file.read(_LOOKED_AT)
+        if start.strip() and _BACKUP not in start:
+            raise UsageError(
+                f"{path} is no backup, and is kept", hint="name another folder", file=str(path)
+            ) from error
+        raise
+
+
+def age_s(backup: Backup, now: datetime) -> float:
+    """How old a backup is, in seconds; below 0 if it is of the future, which is a clock's fault."""
+    created = datetime.fromisoformat(backup.created).astimezone(UTC)
+    return (now - created).total_seconds()

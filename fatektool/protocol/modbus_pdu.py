@@ -1,0 +1,190 @@
+"""Modbus PDUs and checksums, by pymodbus: the one file that knows it, and loads it only when it is used.
+
+::
+
+    function(1) · offset(2) · count(2)                      01 02 03 04 request, 0F 10 answer
+    function(1) · offset(2) · value(2)                      05 06, request and answer; 05: FF00 on, 0000 off
+    function(1) · offset(2) · count(2) · n(1) · n bytes     0F 10 request
+    function(1) · n(1) · n bytes                            01 02 03 04 answer
+    function + 80(1) · exception(1)                         any answer
+
+pymodbus takes some PDUs that are not quite right: it drops what stands behind one, takes any value for 'on',
+does not look at a byte count. So what it has read is written again: only what comes out as it went in is
+believed.
+"""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING, Final
+
+from fatektool.errors import FrameError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from pymodbus.framer import FramerAscii, FramerRTU
+    from pymodbus.pdu import ModbusPDU
+
+EXCEPTION: Final = 0x80
+READ_COILS: Final = 0x01
+READ_DISCRETE_INPUTS: Final = 0x02
+READ_HOLDING_REGISTERS: Final = 0x03
+READ_INPUT_REGISTERS: Final = 0x04
+WRITE_COIL: Final = 0x05
+WRITE_REGISTER: Final = 0x06
+WRITE_COILS: Final = 0x0F
+WRITE_REGISTERS: Final = 0x10
+
+FUNCTION_WORDS: Final = {
+    READ_COILS: "read coils",
+    READ_DISCRETE_INPUTS: "read discrete inputs",
+    READ_HOLDING_REGISTERS: "read holding registers",
+    READ_INPUT_REGISTERS: "read input registers",
+    WRITE_COIL: "write one coil",
+    WRITE_REGISTER: "write one register",
+    WRITE_COILS: "write coils",
+    WRITE_REGISTERS: "write registers",
+}
+READS: Final = frozenset({READ_COILS, READ_DISCRETE_INPUTS, READ_HOLDING_REGISTERS, READ_INPUT_REGISTERS})
+OF_BITS: Final = frozenset({READ_COILS, READ_DISCRETE_INPUTS, WRITE_COIL, WRITE_COILS})
+
+
+@dataclass(frozen=True, slots=True)
+class Pdu:
+    """What a PDU says.
+
+    Attributes:
+        function: 01 to 06, 0F, 10.
+        offset: where; 0 in the answer to a read, which does not say it.
+        count: how many; of a read's answer the bytes' worth of them.
+        bits: states of coils or inputs, in the answer to a read the rest of the last byte too.
+        registers: values.
+        exception: 0 for none.
+    """
+
+    function: int
+    offset: int = 0
+    count: int = 0
+    bits: Sequence[bool] = ()
+    registers: Sequence[int] = ()
+    exception: int = 0
+
+
+def request_bytes(pdu: Pdu) -> bytes:
+    """A request."""
+    return _written(_requests()[pdu.function], pdu)
+
+
+def answer_bytes(pdu: Pdu) -> bytes:
+    """An answer."""
+    if pdu.exception:
+        return bytes([pdu.function | EXCEPTION, pdu.exception])
+    return _written(_answers()[pdu.function], pdu)
+
+
+def parse_request(data: bytes) -> Pdu:
+    """Read a request.
+
+    Raises:
+        FrameError: it is none of these functions, or not in its form.
+    """
+    return _read(_requests(), data)
+
+
+def parse_answer(data: bytes) -> Pdu:
+    """Read an answer, an exception too.
+
+    Raises:
+        FrameError: it is none of these functions, or not in its form.
+    """
+    if data[:1] >= b"\x80":
+        if len(data) != 2 or not data[1]:
+            raise FrameError("exception: expected its code and nothing else", raw=data)
+        return Pdu(data[0] & ~EXCEPTION, exception=data[1])
+    return _read(_answers(), data)
+
+
+def crc_bytes(data: bytes) -> bytes:
+    """The CRC of RTU as it stands on the wire."""
+    return _rtu().compute_CRC(data).to_bytes(2, "big")
+
+
+def lrc_byte(data: bytes) -> int:
+    """The LRC of ASCII."""
+    return _ascii().compute_LRC(data)
+
+
+def _read(classes: dict[int, type[ModbusPDU]], data: bytes) -> Pdu:
+    from pymodbus.exceptions import ModbusException
+
+    kind = classes.get(data[0]) if data else None
+    if kind is None:
+        raise FrameError(f"function {data[:1].hex().upper() or 'none'} is not one of the map's", raw=data)
+    read = kind()
+    try:
+        read.decode(data[1:])
+        said = Pdu(data[0], read.address, read.count, tuple(read.bits), tuple(read.registers))
+        again = _written(kind, said)
+    except (ModbusException, ValueError, IndexError, struct.error) as error:
+        raise FrameError(f"{FUNCTION_WORDS[data[0]]}: {error}", raw=data) from error
+    if again != data:
+        raise FrameError(f"{FUNCTION_WORDS[data[0]]}: its lengths or values do not hold", raw=data)
+    return said
+
+
+def _written(kind: type[ModbusPDU], pdu: Pdu) -> bytes:
+    made = kind()
+    made.address = pdu.offset
+    made.bits = list(pdu.bits)
+    made.registers = list(pdu.registers)
+    made.count = pdu.count or len(pdu.bits) or len(pdu.registers)
+    return bytes([pdu.function]) + made.encode()
+
+
+@cache
+def _requests() -> dict[int, type[ModbusPDU]]:
+    from pymodbus.pdu import bit_message, register_message
+
+    return {
+        READ_COILS: bit_message.ReadCoilsRequest,
+        READ_DISCRETE_INPUTS: bit_message.ReadDiscreteInputsRequest,
+        READ_HOLDING_REGISTERS: register_message.ReadHoldingRegistersRequest,
+        READ_INPUT_REGISTERS: register_message.ReadInputRegistersRequest,
+        WRITE_COIL: bit_message.WriteSingleCoilRequest,
+        WRITE_REGISTER: register_message.WriteSingleRegisterRequest,
+        WRITE_COILS: bit_message.WriteMultipleCoilsRequest,
+        WRITE_REGISTERS: register_message.WriteMultipleRegistersRequest,
+    }
+
+
+@cache
+def _answers() -> dict[int, type[ModbusPDU]]:
+    from pymodbus.pdu import bit_message, register_message
+
+    return {
+        READ_COILS: bit_message.ReadCoilsResponse,
+        READ_DISCRETE_INPUTS: bit_message.ReadDiscreteInputsResponse,
+        READ_HOLDING_REGISTERS: register_message.ReadHoldingRegistersResponse,
+        READ_INPUT_REGISTERS: register_message.ReadInputRegistersResponse,
+        WRITE_COIL: bit_message.WriteSingleCoilResponse,
+        WRITE_REGISTER: register_message.WriteSingleRegisterResponse,
+        WRITE_COILS: bit_message.WriteMultipleCoilsResponse,
+        WRITE_REGISTERS: register_message.WriteMultipleRegistersResponse,
+    }
+
+
+@cache
+def _rtu() -> type[FramerRTU]:
+    from pymodbus.framer import FramerRTU
+
+    return FramerRTU
+
+
+@cache
+def _ascii() -> type[FramerAscii]:
+    from pymodbus.framer import FramerAscii
+
+    return FramerAscii

@@ -1,0 +1,1 @@
+"""Modbus: the client, on pymodbus' PDUs, and the simulated slave, without them, each from the papers."""
