@@ -163,7 +163,9 @@ DAMAGE = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("damage", "message"), DAMAGE, ids=[damage.__name__ for damage, _ in DAMAGE])
+@pytest.mark.parametrize(
+    ("damage", "message"), DAMAGE, ids=[damage.__name__.partition("=")[0] for damage, _ in DAMAGE]
+)
 def test_damage_is_refused_and_named(damage: Callable[[dict[str, Any]], None], message: str) -> None:
     top = document(program(400))
     damage(top)

@@ -108,9 +108,15 @@ def test_a_place_that_cannot_be_written(tmp_path: Path, name: str, message: str,
 
 @pytest.mark.parametrize("overwrite", [False, True])
 def test_a_device_is_no_file_to_replace(*, overwrite: bool) -> None:
-    with pytest.raises(UsageError, match="/dev/null is a device or a pipe"):
-        write_whole(Path("/dev/null"), NEW, overwrite=overwrite)
-    assert Path("/dev/null").is_char_device()
+    master, slave = os.openpty()  # a device whose folder takes no files: a fault here costs nobody /dev/null
+    device = Path(os.ttyname(slave))
+    try:
+        with pytest.raises(UsageError, match=f"{device} is a device or a pipe"):
+            write_whole(device, NEW, overwrite=overwrite)
+        assert device.is_char_device()
+    finally:
+        os.close(master)
+        os.close(slave)
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root writes to read-only folders")

@@ -1,0 +1,105 @@
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import pytest
+
+import tests
+from tests.cli.house import Cli, check
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+ROOT = Path(str(tests.__file__)).parent.parent
+
+
+@pytest.fixture(autouse=True)
+def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A folder of its own to work in, with locks of its own."""
+    locks, work = tmp_path / "locks", tmp_path / "work"
+    locks.mkdir()
+    work.mkdir()
+    monkeypatch.setenv("FATEKTOOL_LOCK_DIR", str(locks))
+    names = ("FATEKTOOL_PORT", "FATEKTOOL_READ_ONLY", "FATEKTOOL_INVENTORY", "FATEKTOOL_TRACEBACK")
+    for name in names:
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.chdir(work)
+    before = signal.getsignal(signal.SIGTERM)
+    yield work
+    signal.signal(signal.SIGTERM, before)
+
+
+@pytest.fixture
+def cli(capsys: pytest.CaptureFixture[str]) -> Cli:
+    return Cli(capsys)
+
+
+class Life(NamedTuple):
+    """A command line that was run step by step."""
+
+    code: int
+    steps: list[str]
+    out: str
+    err: str
+
+    def document(self, schema: str) -> Any:
+        """The one JSON document on stdout, held against its schema."""
+        found = json.loads(self.out)
+        check(found, schema)
+        return found
+
+
+class Mortals:
+    """Runs command lines that die or fail at a step; see ``dying``."""
+
+    def __init__(self, process: subprocess.Popen[str]) -> None:
+        self._process = process
+
+    def __call__(
+        self,
+        *words: object,
+        folder: Path,
+        at: int = 0,
+        how: str = "kill",
+        user: int | None = None,
+        locks: str | None = None,
+        limit: int | None = None,
+    ) -> Life:
+        order = {
+            "words": [str(word) for word in words],
+            "folder": str(folder),
+            "at": at,
+            "how": how,
+            "user": user,
+            "locks": locks,
+            "limit": limit,
+        }
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        self._process.stdin.write(json.dumps(order) + "\n")
+        self._process.stdin.flush()
+        return Life(**json.loads(self._process.stdout.readline()))
+
+
+@pytest.fixture
+def mortals(tmp_path: Path) -> Iterator[Mortals]:
+    if not hasattr(os, "fork"):
+        pytest.skip("needs fork and SIGKILL")
+    locks = {"FATEKTOOL_LOCK_DIR": str(tmp_path / "locks"), "PYTHONIOENCODING": "utf-8"}
+    with subprocess.Popen(
+        [sys.executable, "-m", "tests.reliability.dying"],
+        cwd=ROOT,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        env=dict(os.environ) | locks,
+    ) as process:
+        yield Mortals(process)
+        assert process.stdin is not None
+        process.stdin.close()
