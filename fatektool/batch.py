@@ -96,7 +96,7 @@ class _Batch(Generic[A]):
         """Prove what is not proven yet."""
         link = self._link
         suspicions, trouble, _ = self._signs
-        proven = link.closing_fence()
+        proven = link.fences.close()
         if link.suspicions != suspicions:
             self._ask_unproven_again()
         elif proven and link.signs[1] != trouble:

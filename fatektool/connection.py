@@ -200,7 +200,9 @@ def _hand_over_doubt(lock: PortLock, link: Link, stack: ExitStack) -> None:
     A doubt that no fence took away is not handed on a second time: by then the line was listened to for as
     long as a PLC may take, and a PLC without loopbacks (4E) is not to be locked out for ever.
     """
-    inherited = link.hearing.doubt = lock.found_doubt
+    inherited = lock.found_doubt
+    if inherited:
+        link.fences.inherit_doubt()
 
     def leave() -> None:
         lock.leaves_doubt = link.hearing.doubt and not (inherited and not link.counters.fences)

@@ -5,12 +5,8 @@ time-out the late answer to page 5 would pass for page 6. What keeps them apart:
 
 - Input is dropped before each request.
 - After any doubt (a time-out, garbage, an answer that nobody asked for) a **fence** is put up before the next
-  request: a question whose answer no other question has had, which is the codec's to find. FACON has the
-  loopback (4E), which gives back a fresh nonce. All that comes before that answer is dropped, and only the
-  exact nonce brings the fence down: an older fence's echo does not. A codec that has no such question left
-  leaves it to silence: for as long as a PLC may take, nothing must be heard.
-- Where answers repeat a number of their request (``Codec.numbers``), that tells them apart, and no fence is
-  needed.
+  request: see ``fences``. Where answers repeat a number of their request (``Codec.numbers``), that tells them
+  apart, and none is needed.
 - A two-wire line may echo every byte. The echo of most requests can be told from any answer by its content;
   that of 4E, STOP and RUN cannot. So before the first of those it is learned, from a request of the former
   kind, whether this line echoes; from then on the first copy is the echo and the second the answer.
@@ -33,12 +29,12 @@ from fatektool.errors import (
     FrameError,
     LineError,
     LineReadOnly,
-    NoAnswer,
     PlcRefused,
     TransportClosed,
     TransportError,
     TransportTimeout,
 )
+from fatektool.fences import Fences
 from fatektool.hearing import Hearing
 from fatektool.protocol.codec import require_station
 from fatektool.protocol.commands import Command, Loopback
@@ -113,14 +109,12 @@ class Link:
         self.line = line
         self.byte_time_s = line.byte_time_s
         self.read_only = read_only
-        self._nonces = nonces
-        self._note = note
+        self.note = note
         self.echoes: bool | None = None
         self._silent_tries = 0
         self.answered: set[int] = set()  # commands
-        self._asked: set[bytes] = set()  # the shapes of what was asked since the last fence
+        self.fences = Fences(self, nonces)
         self._number = 0
-        self._fence_command: int = Command.LOOPBACK
         # A gateway keeps the silence before frames itself.
         quiet = codec.quiet_chars if transport.line is not None else 0.0
         self._quiet_s = max(quiet * self.byte_time_s, _LEAST_QUIET_S) if quiet else 0.0
@@ -146,7 +140,7 @@ class Link:
                     self.fence(request)
                 except LineError as error:  # the fence stays up: further tries would be in vain
                     closed = failure if isinstance(failure, TransportClosed) else error
-                    raise self._silence(request, closed) from error
+                    raise self.silence(request, closed) from error
             try:
                 if self.echoes is None and self.codec.echo_may_pass(request):
                     self.learn_echo()
@@ -155,25 +149,26 @@ class Link:
                 failure = error
             if request.writes and self._took(request):
                 return None  # type: ignore[return-value]  # a write's answer is None
-        raise self._silence(request, failure, alive=self.counters.fences > fences)
+        raise self.silence(request, failure, alive=self.counters.fences > fences)
 
     @property
     def suspicions(self) -> int:
         """How often something came that may have been an answer gone astray; numbered ones never do."""
-        return 0 if self._numbered else self.hearing.suspicions
+        return 0 if self.numbered else self.hearing.suspicions
 
     @property
     def signs(self) -> tuple[int, int, int]:
         """Suspicions, trouble and fences so far: the same twice means that nothing was out of order."""
         counters = self.counters
-        return (0, 0, 0) if self._numbered else (self.suspicions, counters.trouble, counters.fences)
+        return (0, 0, 0) if self.numbered else (self.suspicions, counters.trouble, counters.fences)
 
     @property
-    def _numbered(self) -> bool:
+    def numbered(self) -> bool:
+        """True if each answer tells which request it belongs to."""
         return self.codec.numbers > 1
 
     def fence(self, before: Request[Any] | None = None) -> None:
-        """Make sure that no answer to an earlier request can come any more.
+        """Make sure that no answer to an earlier request can come any more: see ``fences``.
 
         Args:
             before: what is asked next, if that is known: the fence's answer must not pass for its either.
@@ -182,76 +177,7 @@ class Link:
             NoAnswer: the PLC does not answer it.
             PlcRefused: it refuses it.
         """
-        if self._numbered:
-            self.hearing.doubt = False  # what is owed may still come, and tells that this PLC is slow
-            return
-        failure: LineError | PlcRefused | None = None
-        if before is not None:
-            self._asked.add(self.codec.shape(before))
-        fence = self.codec.probe
-        for _ in range(self.retries + 1):
-            found = self.codec.fence(self._nonces(), self._asked)
-            if found is None:
-                self._hear_silence()
-                return
-            fence = found
-            self._fence_command = fence.command
-            try:
-                if self.echoes is None and self.codec.echo_may_pass(fence):
-                    self.learn_echo()
-                self.try_once(fence)
-            except (TransportError, FrameError) as error:
-                failure = error
-                continue
-            except PlcRefused as error:
-                if isinstance(fence, Loopback):
-                    raise
-                self.hearing.doubt = True
-                failure = error  # of a question before: an error code does not name its question either
-                continue
-            self.hearing.fenced()
-            self.counters.fences += 1
-            self._asked = {self.codec.shape(fence)}
-            return
-        if isinstance(failure, PlcRefused):
-            raise failure
-        raise self._silence(fence, failure)
-
-    def _hear_silence(self) -> None:
-        """Wait until nothing comes for as long as a PLC may take.
-
-        Raises:
-            LineError: the line is never silent.
-        """
-        probe = self.codec.probe
-        wire_s = (self.codec.request_bytes(probe) + self.codec.answer_bytes(probe)) * self.byte_time_s
-        for _ in range(self.retries + 1):
-            heard = self.counters.bytes_heard
-            wait_s = wire_s + self.timeout_s * self.hearing.patience
-            self.hearing.listen_until(self.transport.clock() + wait_s)
-            if self.counters.bytes_heard == heard:
-                self.hearing.fenced()
-                self._asked.clear()
-                return
-        raise self._silence(probe, None)
-
-    def closing_fence(self) -> bool:
-        """A fence behind the last of many requests; True if it proves their answers.
-
-        A PLC that never answered a loopback is let off with a note: with nothing astray before, what is lost
-        is the proof, not the answers.
-        """
-        self.hearing.drop_input()
-        doubt = self.hearing.doubt
-        try:
-            self.fence()
-        except (NoAnswer, PlcRefused):
-            if doubt or self._fence_command in self.answered:
-                raise
-            self._note("this PLC answers no loopback (4E): a late answer to an earlier request could pass")
-            self.hearing.fenced()
-            return False
-        return True
+        self.fences.put_up(before)
 
     def broadcast(self, request: Request[None]) -> None:
         """Send a request to every PLC on the line (station 0). Nobody answers.
@@ -330,7 +256,7 @@ class Link:
         codec = self.codec
         self._number = (self._number + 1) % codec.numbers
         raw = codec.encode(self.station, request, self._number)
-        self._asked.add(codec.shape(request))
+        self.fences.note_asked(request)
         return Sent(raw, self.station, codec.code(request), self._number)
 
     def send(self, sent: Sent) -> None:
@@ -419,11 +345,12 @@ class Link:
         except PlcRefused:
             return False
         except LineError as error:
-            raise self._silence(request, error, unknown=True) from error
+            raise self.silence(request, error, unknown=True) from error
 
-    def _silence(
+    def silence(
         self, request: Request[A], failure: LineError | None, *, alive: bool = False, unknown: bool = False
     ) -> LineError:
+        """The error for a request that found no answer to trust: see ``silence.no_answer``."""
         if isinstance(failure, TransportClosed):
             return failure
         return no_answer(

@@ -33,6 +33,7 @@ FLOORS = {
     "transport": 2,
     "planner": 3,
     "link": 3,
+    "fences": 3,
     "batch": 3,
     "client": 3,
     "connection": 4,
@@ -46,7 +47,7 @@ FLOORS = {
 }
 """A room may import from lower floors and from itself; the link's parts and the client share a floor."""
 
-SHARED = {"hearing", "link", "stream", "batch", "client", "planner"}
+SHARED = {"hearing", "fences", "link", "stream", "batch", "client", "planner"}
 TO_THE_SIMULATOR = {"simulator", "connection", "cli"}
 PRINTERS = {"click", "rich", "logging"}
 

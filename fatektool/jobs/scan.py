@@ -238,6 +238,8 @@ class _Scanner:
         """True for an answer; an echo of the request is none."""
         codec, brief = setting.codec, None
         probe = codec.probe
+        if not 1 <= frame.station <= codec.last_station:  # nobody can have it
+            return False
         if frame.command != codec.code(probe) or frame.raw == codec.encode(frame.station, probe):
             return False
         try:

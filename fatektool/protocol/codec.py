@@ -163,12 +163,12 @@ class Codec(Protocol):
     def shape(self, request: Request[Any]) -> bytes:
         """What an answer shows of its request: fences avoid those of what was asked."""
 
-    def fence(self, nonce: bytes, asked: Collection[bytes]) -> Request[Any] | None:
+    def fence(self, nonce: bytes, asked: Collection[bytes] | None) -> Request[Any] | None:
         """A request whose answer cannot be taken for that of any other; None if there is none left.
 
         Args:
             nonce: never the same twice.
-            asked: the shapes of the requests whose answers may still come.
+            asked: the shapes of the requests whose answers may still come; None if that is not known.
         """
 
 

@@ -48,6 +48,6 @@ class FatekCommands:
         """Nothing: a fence is known by its nonce."""
         return b""
 
-    def fence(self, nonce: bytes, asked: Collection[bytes]) -> Request[Any]:  # noqa: ARG002  # the interface's
+    def fence(self, nonce: bytes, asked: Collection[bytes] | None) -> Request[Any]:  # noqa: ARG002  # the interface's
         """A loopback (4E) with a nonce."""
         return Loopback(nonce)

@@ -169,13 +169,15 @@ class ModbusCodec:
         size = 0 if request.writes else modbus_sizes.answer_size(request)
         return bytes([modbus_data.function_of(request, self.map), size])
 
-    def fence(self, nonce: bytes, asked: Collection[bytes]) -> Request[Any] | None:
+    def fence(self, nonce: bytes, asked: Collection[bytes] | None) -> Request[Any] | None:
         """A read whose answer has a length that no answer to what was asked has.
 
         Args:
             nonce: where to begin to look.
-            asked: the shapes of what was asked.
+            asked: the shapes of what was asked; None for anything: then no length is left.
         """
+        if asked is None:
+            return None
         found = list(self._fences())
         start = int.from_bytes(nonce[-2:], "big")
         for place in range(len(found)):

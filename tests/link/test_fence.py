@@ -166,7 +166,7 @@ def test_a_plc_without_loopback_serves_a_clean_line(refuses: bool) -> None:
     notes: list[str] = []
     link = linked(peer, notes=notes)
     assert link.ask(R0) == (0xA000,)
-    assert link.closing_fence() is False
+    assert link.fences.close() is False
     assert "answers no loopback (4E)" in notes[0]
     assert link.ask(R0) == (0xA000,)
     assert link.counters.fences == 0
@@ -180,15 +180,15 @@ def test_a_plc_without_loopback_is_not_trusted_after_a_doubt() -> None:
     link = linked(peer)
     assert link.ask(R0) == (0xA000,)
     with pytest.raises(NoAnswer):
-        link.closing_fence()
+        link.fences.close()
 
 
 def test_a_loopback_that_was_answered_once_is_owed_ever_after() -> None:
     peer = Rules({ASK_R0: ZERO, nonce(1): lambda _: SILENCE, nonce(2): lambda _: SILENCE})
     link = linked(peer, retries=1)
-    assert link.closing_fence() is True
+    assert link.fences.close() is True
     with pytest.raises(NoAnswer):
-        link.closing_fence()
+        link.fences.close()
 
 
 def test_a_refused_fence_is_told() -> None:

@@ -246,3 +246,8 @@ def test_an_rtu_line_is_silent_for_three_and_a_half_characters() -> None:
     beyond = linked(Peer(lambda request, _: [(0.01, served(request))]))
     beyond.ask(R100)
     assert beyond._quiet_s == 0  # a gateway keeps it itself
+
+
+def test_behind_a_doubt_of_somebody_else_only_silence_is_a_fence() -> None:
+    assert RTU.fence(b"\0\x05", set()) is not None
+    assert RTU.fence(b"\0\x05", None) is None

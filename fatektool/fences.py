@@ -1,0 +1,126 @@
+"""Fences: behind one, no answer to an earlier request can come any more.
+
+A fence is a question whose answer no other question has had, which is the codec's to find. FACON has the
+loopback (4E), which gives back a fresh nonce. All that comes before that answer is dropped, and only the
+exact nonce brings the fence down: an older fence's echo does not. A protocol without such a question reads a
+length that nothing else had; one that has none left, or does not know what was asked before, leaves it to
+silence: for as long as a PLC may take, nothing must be heard.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from fatektool.errors import FrameError, NoAnswer, PlcRefused, TransportError
+from fatektool.protocol.commands import Command, Loopback
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fatektool.errors import LineError
+    from fatektool.link import Link
+    from fatektool.protocol.commands import Request
+
+
+class Fences:
+    """The fences of one link.
+
+    Args:
+        link: whose answers are to be told apart.
+        nonces: gives nonces, never the same twice.
+    """
+
+    def __init__(self, link: Link, nonces: Callable[[], bytes]) -> None:
+        self._link = link
+        self._nonces = nonces
+        self._asked: set[bytes] = set()  # the shapes of what was asked since the last fence
+        self._inherited = False
+        self._command: int = Command.LOOPBACK
+
+    def inherit_doubt(self) -> None:
+        """Somebody before left an answer on its way: to what question, nobody knows."""
+        self._link.hearing.doubt = self._inherited = True
+
+    def note_asked(self, request: Request[Any]) -> None:
+        """Remember a question whose answer may come at any time, until the next fence."""
+        self._asked.add(self._link.codec.shape(request))
+
+    def put_up(self, before: Request[Any] | None) -> None:
+        """Ask until the fence's own answer comes; see ``Link.fence``."""
+        link = self._link
+        if link.numbered:
+            link.hearing.doubt = False  # what is owed may still come, and tells that this PLC is slow
+            return
+        failure: LineError | PlcRefused | None = None
+        if before is not None:
+            self.note_asked(before)
+        fence = link.codec.probe
+        for _ in range(link.retries + 1):
+            found = link.codec.fence(self._nonces(), None if self._inherited else self._asked)
+            if found is None:
+                self._hear_silence()
+                return
+            fence = found
+            self._command = fence.command
+            try:
+                if link.echoes is None and link.codec.echo_may_pass(fence):
+                    link.learn_echo()
+                link.try_once(fence)
+            except (TransportError, FrameError) as error:
+                failure = error
+                continue
+            except PlcRefused as error:
+                if isinstance(fence, Loopback):
+                    raise
+                link.hearing.doubt = True
+                failure = error  # of a question before: an error code does not name its question either
+                continue
+            link.counters.fences += 1
+            self._came_down()
+            self.note_asked(fence)
+            return
+        if isinstance(failure, PlcRefused):
+            raise failure
+        raise link.silence(fence, failure)
+
+    def close(self) -> bool:
+        """A fence behind the last of many requests; True if it proves their answers.
+
+        A PLC that never answered a fence is let off with a note: with nothing astray before, what is lost is
+        the proof, not the answers.
+        """
+        link = self._link
+        link.hearing.drop_input()
+        doubt = link.hearing.doubt
+        try:
+            link.fence()
+        except (NoAnswer, PlcRefused):
+            if doubt or self._command in link.answered:
+                raise
+            link.note("this PLC answers no loopback (4E): a late answer to an earlier request could pass")
+            self._came_down()
+            return False
+        return True
+
+    def _hear_silence(self) -> None:
+        """Wait until nothing comes for as long as a PLC may take.
+
+        Raises:
+            LineError: the line is never silent.
+        """
+        link = self._link
+        probe = link.codec.probe
+        wire_s = (link.codec.request_bytes(probe) + link.codec.answer_bytes(probe)) * link.byte_time_s
+        for _ in range(link.retries + 1):
+            heard = link.counters.bytes_heard
+            wait_s = wire_s + link.timeout_s * link.hearing.patience
+            link.hearing.listen_until(link.transport.clock() + wait_s)
+            if link.counters.bytes_heard == heard:
+                self._came_down()
+                return
+        raise link.silence(probe, None)
+
+    def _came_down(self) -> None:
+        self._link.hearing.fenced()
+        self._asked.clear()
+        self._inherited = False
