@@ -174,6 +174,8 @@ def test_any_answer(spoken: Spoken, data: st.DataObject) -> None:
 @given(st.data())
 def test_any_bytes_as_an_answer(spoken: Spoken, data: st.DataObject) -> None:
     request, content = data.draw(requests_of(spoken.codec)), data.draw(st.binary(max_size=300))
+    if spoken.codec.name == "facon":
+        content = content.translate(None, b"\x02\x03")  # where they stand the frame begins or ends
     raw = spoken.framed(0x52, 1, request.command, content)
     try:
         answer = spoken.codec.parse_answer(request, Frame(1, request.command, content, raw))
