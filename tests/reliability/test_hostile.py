@@ -16,6 +16,7 @@ from fatektool.errors import DataError
 from fatektool.jobs.snapshot import parse_snapshot
 from fatektool.program.archive import Backup, save_backup
 from fatektool.program.strict_json import read_json
+from fatektool.program.strict_toml import MOST_PARTS, read_toml
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.state import dump_state, parse_state
 from tests.cli.house import COMMAND, environment, one_line
@@ -190,6 +191,21 @@ def test_what_is_no_utf_8_is_refused(name: str, damage: bytes) -> None:
 def test_json_that_says_two_things(text: str) -> None:
     with pytest.raises(ValueError, match=r"stands twice|is no JSON"):
         read_json(text.encode())
+
+
+@pytest.mark.parametrize("part", ["a", '"a b"', "'a.b'", "a-1"])
+@pytest.mark.parametrize("dot", [".", " . "])
+def test_a_key_of_too_many_parts_is_refused_and_one_less_is_not(part: str, dot: str) -> None:
+    for parts in (1, MOST_PARTS):
+        found = read_toml(f"{dot.join([part] * parts)} = 1")
+        assert len(found) == 1
+    with pytest.raises(ValueError, match=rf"^a key of more than {MOST_PARTS} parts$"):
+        read_toml(f"b = 2\n{dot.join([part] * (MOST_PARTS + 1))} = 1")
+
+
+def test_toml_that_is_too_deep() -> None:
+    with pytest.raises(ValueError, match=r"^too deep$"):
+        read_toml("a = " + "[" * 50_000)
 
 
 # --- names ------------------------------------------------------------------------------------------------

@@ -15,8 +15,8 @@ from tests.protocol.decoding import framed
 from .damage import DAMAGES, count
 from .rig import OLD, Rig
 
-ANSWERS = 4000
-BACKUPS = 150
+ANSWERS = 2000
+BACKUPS = 100
 ODD = ("bit errors, 1 in 1000", "bit errors, 1 in 200", "bit errors, 1 in 50")
 """Damages that leave each byte they hit with an odd number of wrong bits."""
 
