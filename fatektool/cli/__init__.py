@@ -102,6 +102,10 @@ def failed(error: FatektoolError, *, as_json: bool) -> int:
 def _usage(error: click.ClickException) -> UsageError:
     context = getattr(error, "ctx", None)
     command = context.command_path if context is not None else "fatektool"
+    if type(error).__name__ == "NoArgsIsHelpError" and isinstance(context, click.Context):
+        group = context.command
+        names = group.list_commands(context) if isinstance(group, click.Group) else []
+        return UsageError(f"{command}: expected one of {', '.join(names)}", hint=f"see '{command} --help'")
     return UsageError(error.format_message().rstrip("."), hint=f"see '{command} --help'")
 
 

@@ -98,3 +98,10 @@ def test_completion_completes(
     done = cli()
     assert done.code == 0
     assert found in done.out.splitlines()
+
+
+def test_a_group_without_a_command_names_its_commands(cli: Cli) -> None:
+    done = cli("discrete")
+    assert (done.code, done.out) == (2, "")
+    expected = "fatektool discrete: expected one of disable, enable, list, reset, set"
+    assert done.err == f"fatektool: {expected}; see 'fatektool discrete --help'\n"
