@@ -23,7 +23,7 @@ answers are seen to come late gets twice that time, up to four times; one that i
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from fatektool.errors import (
     FrameError,
@@ -39,6 +39,7 @@ from fatektool.hearing import Hearing
 from fatektool.protocol.codec import require_station
 from fatektool.protocol.commands import Command, Loopback
 from fatektool.protocol.read_back import read_back
+from fatektool.sending import Sender
 from fatektool.silence import no_answer
 from fatektool.transport.base import no_note
 
@@ -47,27 +48,13 @@ if TYPE_CHECKING:
 
     from fatektool.protocol.codec import Codec, Frame
     from fatektool.protocol.commands import Request
+    from fatektool.sending import Sent
     from fatektool.transport.base import LineSettings, Transport
 
 A = TypeVar("A")
 
 _READ_BYTES = 4096
 _SILENT_TRIES_BEFORE_RENEWAL = 2
-_LEAST_QUIET_S = 0.00175
-"""Above 19200 baud a silence between frames grows no shorter (Modbus over serial line, section 2.5.1.1)."""
-
-
-class Sent(NamedTuple):
-    """A request as it goes out, and what its answer must bear."""
-
-    raw: bytes
-    station: int
-    code: int
-    number: int
-
-    def answered_by(self, frame: Frame) -> bool:
-        """True if the frame may be its answer, as far as station, command and number tell."""
-        return (frame.station, frame.command, frame.number) == (self.station, self.code, self.number)
 
 
 class Link:
@@ -114,11 +101,7 @@ class Link:
         self._silent_tries = 0
         self.answered: set[int] = set()  # commands
         self.fences = Fences(self, nonces)
-        self._number = 0
-        # A gateway keeps the silence before frames itself.
-        quiet = codec.quiet_chars if transport.line is not None else 0.0
-        self._quiet_s = max(quiet * self.byte_time_s, _LEAST_QUIET_S) if quiet else 0.0
-        self._quiet_from = transport.clock()
+        self.sender = Sender(self)
 
     # --- what others call -------------------------------------------------------------------------
 
@@ -226,7 +209,7 @@ class Link:
         self.hearing.words = ""
         self.counters.exchanges += 1
         try:
-            self.send(sent)
+            self.sender.send(sent)
             size = self.codec.answer_bytes(request)
             deadline = self.transport.clock() + (len(sent.raw) + size) * self.byte_time_s
             return self._await(request, sent, size, deadline + self.timeout_s * self.hearing.patience)
@@ -245,30 +228,17 @@ class Link:
             self.hearing.lost()
             raise
         finally:
-            self.heard_out()
+            self.sender.heard_out()
 
     def prepare(self, request: Request[Any]) -> Sent:
-        """A request as it goes out.
+        """A request as it goes out; its answer may come from now on, until the next fence.
 
         Raises:
             UsageError: it cannot be said in this protocol.
         """
-        codec = self.codec
-        self._number = (self._number + 1) % codec.numbers
-        raw = codec.encode(self.station, request, self._number)
+        sent = self.sender.prepare(request)
         self.fences.note_asked(request)
-        return Sent(raw, self.station, codec.code(request), self._number)
-
-    def send(self, sent: Sent) -> None:
-        """Write a request, when the line has been silent for as long as the protocol wants it."""
-        if self._quiet_s:
-            self.hearing.listen_until(self._quiet_from + self._quiet_s)
-        self.transport.write(sent.raw)
-
-    def heard_out(self) -> None:
-        """The line may be silent from now on."""
-        if self._quiet_s:
-            self._quiet_from = self.transport.clock()
+        return sent
 
     def _await(self, request: Request[A], sent: Sent, size: int, deadline: float) -> A:
         raw = sent.raw

@@ -18,9 +18,10 @@ from fatektool.errors import FrameError, PlcRefused, TransportError, TransportTi
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from fatektool.link import Link, Sent
+    from fatektool.link import Link
     from fatektool.protocol.codec import Frame
     from fatektool.protocol.commands import Request
+    from fatektool.sending import Sent
 
 A = TypeVar("A")
 
@@ -43,7 +44,7 @@ def ask_in_stream(link: Link, requests: Sequence[Request[A]], first: int, take: 
     waiting: Frame | bytes = b""  # the last answer, not yet looked at
     try:
         for place in range(first, len(requests)):
-            link.send(sent)
+            link.sender.send(sent)
             link.counters.exchanges += 1
             if place > first and not _accept(link, requests[place - 1], asked, waiting, take):
                 hearing.give_up()
@@ -52,7 +53,7 @@ def ask_in_stream(link: Link, requests: Sequence[Request[A]], first: int, take: 
             if place + 1 < len(requests):
                 sent = link.prepare(requests[place + 1])
             received = _receive(link, requests[place], len(asked.raw))
-            link.heard_out()
+            link.sender.heard_out()
             if received is None:
                 return
             waiting = received

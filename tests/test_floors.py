@@ -34,6 +34,7 @@ FLOORS = {
     "planner": 3,
     "link": 3,
     "fences": 3,
+    "sending": 3,
     "batch": 3,
     "client": 3,
     "connection": 4,
@@ -47,7 +48,7 @@ FLOORS = {
 }
 """A room may import from lower floors and from itself; the link's parts and the client share a floor."""
 
-SHARED = {"hearing", "fences", "link", "stream", "batch", "client", "planner"}
+SHARED = {"hearing", "fences", "sending", "link", "stream", "batch", "client", "planner"}
 TO_THE_SIMULATOR = {"simulator", "connection", "cli"}
 PRINTERS = {"click", "rich", "logging"}
 

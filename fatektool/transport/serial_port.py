@@ -54,7 +54,11 @@ def open_serial(
     if low_latency and not pty and sys.platform == "linux" and "://" not in target:
         try:
             port.set_low_latency_mode(True)
-        except (ValueError, OSError, NotImplementedError) as error:
+        except (
+            ValueError,
+            OSError,
+            NotImplementedError,
+        ) as error:  # the last is pyserial's, on other systems
             note(f"{target}: the driver has no low latency mode: {error}")
     if hasattr(port, "fd") and os.name == "posix" and "://" not in target:  # spy:// wants to be asked
         if not (pty or check_parity(port.fd, line)):

@@ -165,10 +165,10 @@ def test_over_tcp_the_number_tells_and_no_fence_is_put_up() -> None:
 
 def test_numbers_begin_anew() -> None:
     link = linked(Peer(lambda request, _: [(0.01, tcp_answer(request, 7))]), TCP)
-    link._number = 0xFFFE
+    link.sender._number = 0xFFFE
     for _ in range(3):
         assert link.ask(R100) == (7,)
-    assert link._number == 1
+    assert link.sender._number == 1
 
 
 def test_a_slow_plc_over_tcp_is_given_more_time() -> None:
@@ -245,7 +245,7 @@ def test_an_rtu_line_is_silent_for_three_and_a_half_characters() -> None:
     assert max(gaps) == pytest.approx(3.5 * LINE.byte_time_s)
     beyond = linked(Peer(lambda request, _: [(0.01, served(request))]))
     beyond.ask(R100)
-    assert beyond._quiet_s == 0  # a gateway keeps it itself
+    assert beyond.sender._quiet_s == 0  # a gateway keeps it itself
 
 
 def test_behind_a_doubt_of_somebody_else_only_silence_is_a_fence() -> None:
