@@ -1,6 +1,7 @@
-"""The least that could read a program: write a request, read as many bytes as the answer has, again.
+"""The least that could work: write a request, read as many bytes as the answer has, again.
 
-It checks nothing. Usage: bare_loop.py TARGET PAGES; prints ``{"duration_s": …}``.
+It checks nothing. Usage: bare_loop.py TARGET, with ``REQUEST-IN-HEX ANSWER-BYTES`` a line on stdin; prints
+``{"duration_s": …}``.
 """
 
 from __future__ import annotations
@@ -12,27 +13,20 @@ import sys
 import time
 from typing import TYPE_CHECKING
 
+from exchanges import reading as requests  # noqa: F401
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-ANSWER_BYTES = 8 + 1 + 256
 
-
-def requests(pages: int) -> list[bytes]:
-    """All requests, ready to be sent."""
-    found = []
-    for page in range(pages):
-        body = b"\x02014F%04X" % page
-        found.append(b"%b%02X\x03" % (body, sum(body) & 0xFF))
-    return found
-
-
-def loop(todo: list[bytes], write: Callable[[bytes], object], read: Callable[[int], bytes]) -> float:
+def loop(
+    todo: list[tuple[bytes, int]], write: Callable[[bytes], object], read: Callable[[int], bytes]
+) -> float:
     """Send all and read all; seconds from the first byte to the last."""
     began = time.perf_counter()
-    for request in todo:
+    for request, size in todo:
         write(request)
-        missing = ANSWER_BYTES
+        missing = size
         while missing:
             missing -= len(read(missing))
     return time.perf_counter() - began
@@ -40,8 +34,9 @@ def loop(todo: list[bytes], write: Callable[[bytes], object], read: Callable[[in
 
 def main() -> None:
     """Run the loop on a TCP or a pty target."""
-    target, pages = sys.argv[1], int(sys.argv[2])
-    todo = requests(pages)
+    target = sys.argv[1]
+    lines = (line.split() for line in sys.stdin)
+    todo = [(bytes.fromhex(request), int(size)) for request, size in lines]
     if target.startswith("tcp://"):
         host, _, port = target.removeprefix("tcp://").rpartition(":")
         with socket.create_connection((host, int(port))) as connected:

@@ -7,13 +7,14 @@ import json
 import os
 import subprocess
 import sys
-import tempfile
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from exchanges import Exchange
 
 HERE = Path(__file__).parent
 LARGEST = 65535  # words: 1025 pages
@@ -56,22 +57,20 @@ def doors(*options: str) -> Iterator[list[str]]:
             process.terminate()
 
 
-def bare(target: str, pages: int, line: str = "") -> Timing:
+def bare(target: str, exchanges: list[Exchange]) -> Timing:
     """The bare loop, in a process of its own."""
-    return _timed([sys.executable, str(HERE / "bare_loop.py"), target, str(pages), line])
+    lines = "".join(f"{request.hex()} {size}\n" for request, size in exchanges)
+    return _timed([sys.executable, str(HERE / "bare_loop.py"), target], lines)
 
 
-def tool(target: str, *options: str) -> Timing:
-    """A single-pass backup by the command line."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = str(Path(folder) / "backup.json")
-        command = [sys.executable, "-m", "fatektool", "backup", file, "-p", target]
-        return _timed([*command, "--single-pass", "--json", *options])
+def tool(*words: str) -> Timing:
+    """A command of the tool."""
+    return _timed([sys.executable, "-m", "fatektool", *words, "--json", "-q"])
 
 
-def _timed(command: list[str]) -> Timing:
+def _timed(command: list[str], lines: str = "") -> Timing:
     began = time.perf_counter()
-    done = subprocess.run(pinned(1, command), stdout=subprocess.PIPE, check=True)
+    done = subprocess.run(pinned(1, command), input=lines, stdout=subprocess.PIPE, check=True, text=True)
     process_s = time.perf_counter() - began
     document: dict[str, Any] = json.loads(done.stdout)
     return Timing(document["duration_s"], process_s)
@@ -82,11 +81,13 @@ def best(timings: list[Timing]) -> Timing:
     return Timing(min(t.transfer_s for t in timings), min(t.process_s for t in timings))
 
 
-def row(name: str, tool_took: Timing, bare_took: Timing, limit: float) -> str:
-    """One line of a table, with the limit beside the ratio."""
+def row(name: str, tool_took: Timing, bare_took: Timing, limit: float, wire_s: float = 0.0) -> str:
+    """One line of a table, with the limit beside the ratio, and how much of the time the line was in use."""
     transfer = tool_took.transfer_s / bare_took.transfer_s
     process = tool_took.process_s / bare_took.process_s
+    use = f"  wire/tool {wire_s / tool_took.transfer_s:.3f}" if wire_s else ""
     return (
-        f"{name:<22} bare {bare_took.transfer_s:8.3f} s  tool {tool_took.transfer_s:8.3f} s  "
-        f"transfer {transfer:.3f}  process {process:.3f}  limit {limit:.2f}"
+        f"{name:<30} bare {bare_took.transfer_s:8.3f} s  tool {tool_took.transfer_s:8.3f} s  "
+        f"transfer {transfer:.3f}  process {process:.3f}  limit {limit:.2f}{use}"
+        f"{'  OVER' if transfer > limit else ''}"
     )

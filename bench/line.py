@@ -1,4 +1,8 @@
-"""How much of the line does a backup use? Against a bare loop, on a pty paced to a baud rate.
+"""How much of the line does each job use? Against a bare loop, on a pty paced to a baud rate.
+
+The bare loop sends what the job cannot do without, in a process of its own: see ``exchanges``. *transfer* is
+from the first request to the last answer, *process* the whole command with Python's start. *wire* is the
+bare loop's bytes at this baud.
 
 Usage: python bench/line.py [BAUD …]
 """
@@ -7,29 +11,103 @@ from __future__ import annotations
 
 import sys
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
-from common import bare, best, row, simulator, tool
+import exchanges
+from common import Timing, bare, best, row, simulator, tool
 
-LIMITS = {9600: 1.02, 38400: 1.02, 115200: 1.02, 921600: 1.05}
-WORDS = {9600: 2048, 38400: 8192, 115200: 13184, 921600: 65535}
-RUNS = 3
+sys.path.insert(0, str(Path(__file__).parent.parent))
+
+from fatektool.program.archive import Backup, load_backup
+from fatektool.program.image import Program
+
+LIMITS = {9600: 1.01, 38400: 1.01, 115200: 1.01, 921600: 1.03}
+WORDS = {9600: 4096, 38400: 8192, 115200: 13184, 921600: 65535}
+RUNS = {921600: 3}
+BITS = 10  # 7E1
+CHANGED = 10  # one page in so many
+
+
+class Bench:
+    """One simulated PLC on a paced pty, and the programs that are written into it in turn.
+
+    Args:
+        target: the pty.
+        baud: its pace.
+        first: the program that it holds.
+        second: another.
+        folder: for files.
+    """
+
+    def __init__(self, target: str, baud: int, first: Backup, second: Backup, folder: Path) -> None:
+        self.target = target
+        self.baud = baud
+        self.old = first.program.pages
+        self.new = second.program.pages
+        some = [new if number % CHANGED == 1 else old for number, (old, new) in enumerate(self._pairs())]
+        programs = {"old": self.old, "new": self.new, "some": tuple(some)}
+        self.files = {name: str(folder / f"{name}.json") for name in programs}
+        for name, pages in programs.items():
+            changed = replace(first, program=Program(first.program.ladder_words, pages))
+            Path(self.files[name]).write_bytes(changed.to_bytes())
+        self.backup = str(folder / "backup.json")
+        self.snapshot = str(folder / "snapshot.json")
+
+    def _pairs(self) -> list[tuple[bytes, bytes]]:
+        return list(zip(self.old, self.new, strict=True))
+
+    def jobs(self) -> dict[str, tuple[list[str], list[exchanges.Exchange]]]:
+        """By name: the tool's words, and the bare loop's exchanges, which leave the first program."""
+        pages = len(self.old)
+        every = list(enumerate(self.old))
+        differ = [number for number, (old, new) in enumerate(self._pairs()) if old != new]
+        some = [(number, self.old[number]) for number in differ if number % CHANGED == 1]
+        restore = ["restore", "--yes"]
+        return {
+            "backup": (["backup", self.backup, "--force"], exchanges.backup(pages)),
+            "verify": (["verify", self.files["old"]], exchanges.verify(pages)),
+            "restore": ([*restore, self.files["new"]], exchanges.restore(pages, every)),
+            "restore --changed-only": (
+                [*restore, "--changed-only", self.files["some"]],
+                exchanges.restore(pages, some),
+            ),
+            "snapshot --all": (["snapshot", "--all", "-o", self.snapshot], exchanges.snapshot()),
+        }
+
+    def rows(self) -> None:
+        """Print a row a job."""
+        limit = LIMITS.get(self.baud, 1.03)
+        for name, (words, todo) in self.jobs().items():
+            bares: list[Timing] = []
+            tools: list[Timing] = []
+            for _ in range(RUNS.get(self.baud, 1)):
+                tools.append(tool(*words, "-p", self.target, "--baud", str(self.baud)))
+                bares.append(bare(self.target, todo))
+            wire_s = exchanges.wire_bytes(todo) * BITS / self.baud
+            print(row(f"{self.baud} {name}", best(tools), best(bares), limit, wire_s), flush=True)
+
+
+def program(words: int, seed: int, folder: Path) -> Backup:
+    """A program of this size, as a backup over TCP."""
+    options = ["--tcp", "127.0.0.1:0", "--ladder-words", str(words), "--program-seed", str(seed)]
+    file = folder / f"seed-{seed}.json"
+    with simulator(*options) as target:
+        tool("backup", str(file), "-p", target)
+    return load_backup(file)
 
 
 def main() -> None:
-    """Print a row a baud rate."""
-    for baud in [int(word) for word in sys.argv[1:]] or [38400, 115200, 921600]:
+    """Print a row a baud rate and job."""
+    for baud in [int(word) for word in sys.argv[1:]] or sorted(LIMITS):
         words = WORDS.get(baud, 8192)
-        pages = 1 + -(-words // 64)
-        with tempfile.TemporaryDirectory() as folder:
-            link = str(Path(folder) / "plc")
-            options = ["--pty", link, "--baud", str(baud), "--ladder-words", str(words)]
-            with simulator(*options) as target:
-                bares, tools = [], []
-                for _ in range(RUNS):
-                    bares.append(bare(target, pages))
-                    tools.append(tool(target, "--baud", str(baud)))
-        print(row(f"{baud} baud, {pages} pages", best(tools), best(bares), LIMITS.get(baud, 1.05)))
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            first, second = program(words, 1, folder), program(words, 2, folder)
+            options = ["--baud", str(baud), "--ladder-words", str(words), "--program-seed", "1"]
+            with simulator("--pty", str(folder / "plc"), *options) as target:
+                print(f"{baud} 7E1, {len(first.program.pages)} pages")
+                Bench(target, baud, first, second, folder).rows()
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Many requests of one kind, none of which gets another's answer.
+"""Many requests of one kind, none of which gets another's answer: reads, and writes, which need no more.
 
 An answer that came twice could pass for the next question's, and shift all that follow by one. So answers are
 taken as proven only behind a fence:
@@ -53,6 +53,39 @@ def ask_all(
     if len(requests) > 1:
         batch.close()
     return batch.answers
+
+
+def tell_all(
+    link: Link, requests: Sequence[Request[None]], on_answer: Callable[[int], None] | None = None
+) -> None:
+    """Send writes one after the other, each when the one before it is acknowledged.
+
+    An acknowledgement may be another's, as everywhere; what was written must be read back.
+
+    Args:
+        link: the line.
+        requests: writes.
+        on_answer: is called with the number of acknowledged writes so far.
+
+    Raises:
+        LineError: the one behind those found no answer to trust; it may have been made.
+        PlcRefused: that one was refused.
+        LineReadOnly: the line may only be read.
+    """
+    done = 0
+
+    def take(_: None) -> None:
+        nonlocal done
+        done += 1
+        if on_answer is not None:
+            on_answer(done)
+
+    while done < len(requests):
+        lost = ask_in_stream(link, requests, done, take)
+        if done < len(requests):
+            if not (lost and link.took(requests[done])):
+                link.ask(requests[done])
+            take(None)
 
 
 class _Batch(Generic[A]):

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fatektool.batch import ask_all
+from fatektool.batch import ask_all, tell_all
 from fatektool.errors import DataError, PlcError
 from fatektool.protocol.commands import (
     Control,
@@ -202,3 +202,15 @@ class Plc:
     def write_page(self, page: int, data: bytes) -> None:
         """50: one page of the program, 128 bytes."""
         self.link.ask(WritePage(page, data))
+
+    def write_pages(
+        self, pages: Sequence[tuple[int, bytes]], on_page: Callable[[int], None] | None = None
+    ) -> None:
+        """50 for many pages, in order. Read them back: an acknowledgement is no proof.
+
+        Args:
+            pages: numbers with 128 bytes each.
+            on_page: is called with the number of pages acknowledged so far; on an error, the page behind
+                those may be written or not.
+        """
+        tell_all(self.link, [WritePage(page, data) for page, data in pages], on_page)

@@ -130,7 +130,7 @@ class Link:
                 return self.try_once(request)
             except (TransportError, FrameError) as error:
                 failure = error
-            if request.writes and self._took(request):
+            if request.writes and self.took(request):
                 return None  # type: ignore[return-value]  # a write's answer is None
         raise self.silence(request, failure, alive=self.counters.fences > fences)
 
@@ -204,7 +204,6 @@ class Link:
             PlcRefused: the answer is an error code.
             LineReadOnly: it writes, and the line may only be read.
         """
-        self.require_leave(request)
         sent = self.prepare(request)
         self.hearing.words = ""
         self.counters.exchanges += 1
@@ -235,7 +234,9 @@ class Link:
 
         Raises:
             UsageError: it cannot be said in this protocol.
+            LineReadOnly: it writes, and the line may only be read.
         """
+        self.require_leave(request)
         sent = self.sender.prepare(request)
         self.fences.note_asked(request)
         return sent
@@ -307,8 +308,12 @@ class Link:
 
     # --- after a failure --------------------------------------------------------------------------
 
-    def _took(self, request: Request[A]) -> bool:
-        """Read back a write whose answer was lost."""
+    def took(self, request: Request[A]) -> bool:
+        """Read back a write whose answer was lost: did the PLC take it?
+
+        Raises:
+            LineError: that is not known.
+        """
         question, took = read_back(request)  # type: ignore[arg-type]  # request.writes: its answer is None
         try:
             return took(self.ask(question))

@@ -1,8 +1,10 @@
 """The fast way through many requests: as long as all is in order, and not one exchange longer.
 
-An answer of the right length sends the next request off, and is looked at while the PLC is at work on that::
+An answer to a read sends the next request off as soon as it has the right length, and is looked at while the
+PLC is at work on that. A write goes out only when the one before it is acknowledged, but is encoded by then::
 
-    request n+1 ─>  look at answer n, encode request n+2  <─ answer n+1
+    reads     request n+1 ─>  look at answer n, encode request n+2  <─ answer n+1
+    writes    request n   ─>  encode request n+1  <─ answer n, look at it
 
 The first sign of anything else (a time-out, a wrong length or checksum, input beside the answer, an error
 code) ends it. The request that is on its way then is given up, and whoever called goes on with ``Link.ask``,
@@ -28,43 +30,84 @@ A = TypeVar("A")
 _READ_BYTES = 4096
 
 
-def ask_in_stream(link: Link, requests: Sequence[Request[A]], first: int, take: Callable[[A], None]) -> None:
-    """Ask reads one after the other from ``requests[first]``, until the end or the first sign of disorder.
+def ask_in_stream(link: Link, requests: Sequence[Request[A]], first: int, take: Callable[[A], None]) -> bool:
+    """Ask one after the other from ``requests[first]``, until the end or the first sign of disorder.
 
     Args:
         link: the line.
-        requests: reads.
+        requests: all reads, or all writes.
         first: the one to begin with.
         take: is given each answer, in order.
+
+    Returns:
+        True if the request behind the last answer was sent, and what became of it is not known.
+
+    Raises:
+        PlcRefused: a write is refused; of a read, the caller hears it by asking again.
+        LineReadOnly: they write, and the line may only be read.
     """
     hearing = link.hearing
     if hearing.drop_input() or hearing.doubt or link.echoes is not False:
-        return
-    asked = sent = link.prepare(requests[first])
-    waiting: Frame | bytes = b""  # the last answer, not yet looked at
+        return False
+    steps = _write_by_write if requests[first].writes else _read_ahead
     try:
-        for place in range(first, len(requests)):
-            link.sender.send(sent)
-            link.counters.exchanges += 1
-            if place > first and not _accept(link, requests[place - 1], asked, waiting, take):
-                hearing.give_up()
-                return
-            asked = sent
-            if place + 1 < len(requests):
-                sent = link.prepare(requests[place + 1])
-            received = _receive(link, requests[place], len(asked.raw))
-            link.sender.heard_out()
-            if received is None:
-                return
-            waiting = received
-            if hearing.drop_input() or place + 1 == len(requests):
-                _accept(link, requests[place], asked, waiting, take)
-                return
+        return steps(link, requests, first, take)
     except TransportError:
         hearing.lost()
+        return True
+    except PlcRefused:
+        raise
     except BaseException:  # an interrupt: the answer may still come
         hearing.lost()
         raise
+
+
+def _read_ahead(link: Link, requests: Sequence[Request[A]], first: int, take: Callable[[A], None]) -> bool:
+    hearing = link.hearing
+    last = len(requests) - 1
+    asked = sent = link.prepare(requests[first])
+    waiting: Frame | bytes = b""  # the last answer, not yet looked at
+    for place in range(first, len(requests)):
+        link.sender.send(sent)
+        link.counters.exchanges += 1
+        if place > first and not _accept(link, requests[place - 1], asked, waiting, take):
+            hearing.give_up()
+            return True
+        asked = sent
+        if place < last:
+            sent = link.prepare(requests[place + 1])
+        received = _receive(link, requests[place], len(asked.raw))
+        link.sender.heard_out()
+        if received is None:
+            return True
+        waiting = received
+        if hearing.drop_input():
+            break
+    return not _accept(link, requests[place], asked, waiting, take)
+
+
+def _write_by_write(
+    link: Link, requests: Sequence[Request[A]], first: int, take: Callable[[A], None]
+) -> bool:
+    hearing = link.hearing
+    sent = link.prepare(requests[first])
+    for place in range(first, len(requests)):
+        asked = sent
+        link.sender.send(asked)
+        link.counters.exchanges += 1
+        if place + 1 < len(requests):
+            sent = link.prepare(requests[place + 1])
+        waiting = _receive(link, requests[place], len(asked.raw))
+        link.sender.heard_out()
+        if waiting is None:
+            return True
+        more = hearing.drop_input()
+        if not _accept(link, requests[place], asked, waiting, take):
+            hearing.lost()
+            return True
+        if more:
+            break
+    return False
 
 
 def _receive(link: Link, request: Request[A], sent: int) -> Frame | bytes | None:
@@ -99,7 +142,11 @@ def _receive(link: Link, request: Request[A], sent: int) -> Frame | bytes | None
 def _accept(
     link: Link, request: Request[A], sent: Sent, waiting: Frame | bytes, take: Callable[[A], None]
 ) -> bool:
-    """Look at an answer; True if it is what the request asked for."""
+    """Look at an answer; True if it is what the request asked for.
+
+    Raises:
+        PlcRefused: a write is refused.
+    """
     hearing = link.hearing
     frame: Frame | None = None
     try:
@@ -119,6 +166,8 @@ def _accept(
             hearing.bad_bytes(error)
             return False
     except PlcRefused:
+        if request.writes:
+            raise
         return False
     hearing.stray(frame)
     return False

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from fatektool.jobs.status import StatusReport
     from fatektool.program.archive import Backup
     from fatektool.program.compare import Comparison
+    from fatektool.program.image import Program
 
 
 def where(plc: Plc) -> dict[str, Any]:
@@ -124,6 +125,20 @@ def differences(comparison: Comparison) -> dict[str, Any]:
             }
             for page in comparison.pages
         ],
+    }
+
+
+def verify_document(
+    plc: Plc, file: Path, program: Program, found: Comparison, duration_s: float
+) -> dict[str, Any]:
+    """``fatektool.verify/1``: a file's program against the PLC's."""
+    return {
+        "schema": "fatektool.verify/1",
+        **where(plc),
+        "file": str(file),
+        "sha256": program.sha256,
+        "duration_s": round(duration_s, 3),
+        **differences(found),
     }
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fatektool.cli.differences import size_of
-from fatektool.cli.documents import differences, saved_document, status_document, where
+from fatektool.cli.documents import saved_document, status_document, verify_document
 from fatektool.cli.options import connection_of
 from fatektool.errors import DataError, PlcError, UsageError
 from fatektool.jobs.backup import backup
@@ -148,14 +148,10 @@ def verify_work(voice: Voice) -> Callable[[PlcEntry, Turn[Done]], Done]:
             raise UsageError("it has no reference", hint='put reference = "FILE" into the inventory')
         program = load_backup(reference).program
         with opened(entry, turn, voice, Command.READ_PAGE) as plc:
+            clock = plc.link.transport.clock
+            began = clock()
             found = verify(plc, program, progress=turn.progress)
-            document = {
-                "schema": "fatektool.verify/1",
-                **where(plc),
-                "file": str(reference),
-                "sha256": program.sha256,
-                **differences(found),
-            }
+            document = verify_document(plc, reference, program, found, clock() - began)
         words = f"same as {reference}" if found.same else f"DIFFERS from {reference}: {size_of(found)}"
         return Done(0 if found.same else 1, document, words, reference, not found.same)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from fatektool.cli.differences import difference_lines
-from fatektool.cli.documents import differences, where
+from fatektool.cli.documents import verify_document
 from fatektool.cli.options import PATH, Connection, connection_options
 from fatektool.cli.report import report_option, write_report
 from fatektool.jobs.verify import verify
@@ -31,14 +31,10 @@ def verify_command(connection: Connection, voice: Voice, *, file: Path, report: 
     """
     backup = load_backup(file)
     with connection.open(voice, needs=(Command.READ_PAGE,)) as plc, voice.progress() as bar:
+        clock = plc.link.transport.clock
+        began = clock()
         found = verify(plc, backup.program, progress=bar.update)
-        document = {
-            "schema": "fatektool.verify/1",
-            **where(plc),
-            "file": str(file),
-            "sha256": backup.program.sha256,
-            **differences(found),
-        }
+        document = verify_document(plc, file, backup.program, found, clock() - began)
     same = f"same: the PLC's program is the one in {file}, {len(backup.program.pages)} pages"
     voice.show(document, difference_lines(found, same, "file", "PLC"))
     if report is not None:

@@ -94,18 +94,31 @@ class Rewrite:
         return not self._pages(_UNCERTAIN) and all(before[page] == after[page] for page in self._pages(_NEW))
 
     def _write(self, program: Program, pages: Sequence[int], state: str, phase: str) -> None:
-        self._progress(phase, 0, len(pages))
-        for done, number in enumerate(pages, 1):
-            before = self._holds.get(number, _OLD)
-            self._holds[number] = _UNCERTAIN
-            try:
-                self._plc.write_page(number, program.pages[number])
-            except PlcRefused:
-                self._holds[number] = before
-                raise
-            self._holds[number] = state
-            self._unread.add(number)
-            self._progress(phase, done, len(pages))
+        total = len(pages)
+        done, before = 0, _OLD
+
+        def begin() -> None:
+            """The next page may be on its way from now on."""
+            nonlocal before
+            if done < total:
+                before = self._holds.get(pages[done], _OLD)
+                self._holds[pages[done]] = _UNCERTAIN
+
+        def taken(acknowledged: int) -> None:
+            nonlocal done
+            self._holds[pages[done]] = state
+            self._unread.add(pages[done])
+            done = acknowledged
+            self._progress(phase, done, total)
+            begin()
+
+        self._progress(phase, 0, total)
+        begin()
+        try:
+            self._plc.write_pages([(number, program.pages[number]) for number in pages], taken)
+        except PlcRefused:
+            self._holds[pages[done]] = before
+            raise
 
     def _prove(self, program: Program, state: str) -> None:
         wrong = self._read_back(program, range(len(program.pages)), "reading back")

@@ -101,6 +101,7 @@ def verified(a: Program, b: Program, **other: Any) -> dict[str, Any]:
         "protocol": "facon",
         "file": "press.json",
         "sha256": a.sha256,
+        "duration_s": 0.5,
         **differences(compare(a, b)),
         **other,
     }
