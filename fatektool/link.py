@@ -236,10 +236,10 @@ class Link:
             UsageError: it cannot be said in this protocol.
             LineReadOnly: it writes, and the line may only be read.
         """
-        self.require_leave(request)
-        sent = self.sender.prepare(request)
+        if self.read_only:
+            self.require_leave(request)
         self.fences.note_asked(request)
-        return sent
+        return self.sender.prepare(request)
 
     def _await(self, request: Request[A], sent: Sent, size: int, deadline: float) -> A:
         raw = sent.raw

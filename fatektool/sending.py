@@ -35,6 +35,8 @@ class Sender:
 
     def __init__(self, link: Link) -> None:
         self._link = link
+        self._codec = link.codec
+        self._station = link.station
         self._number = 0
         # A gateway keeps the silence before frames itself.
         quiet = link.codec.quiet_chars if link.transport.line is not None else 0.0
@@ -47,11 +49,9 @@ class Sender:
         Raises:
             UsageError: it cannot be said in this protocol.
         """
-        link = self._link
-        codec = link.codec
-        self._number = (self._number + 1) % codec.numbers
-        raw = codec.encode(link.station, request, self._number)
-        return Sent(raw, link.station, codec.code(request), self._number)
+        codec, station = self._codec, self._station
+        number = self._number = (self._number + 1) % codec.numbers
+        return Sent(codec.encode(station, request, number), station, codec.code(request), number)
 
     def send(self, sent: Sent) -> None:
         """Write a request, when the line has been silent for as long as the protocol wants it."""

@@ -275,17 +275,25 @@ def run_limit(kind: Kind) -> int:
     return MAX_DISCRETES if kind.bits == 1 else MAX_READ_WORDS // kind.words
 
 
+_READ_RUNS: Final = (ReadDisabled, ReadDiscretes, ReadRegisters)
+_WRITE_RUNS: Final = (WriteDiscretes, WriteRegisters)
+
+
 def require_run_limit(request: Request[Any]) -> None:
     """Check a run against the limits of FACON and M-series; other requests have theirs in every protocol.
 
     Raises:
         UsageError: it is longer.
     """
-    match request:
-        case ReadDisabled(first, count) | ReadDiscretes(first, count) | ReadRegisters(first, count):
-            _run(first, count, run_limit(first.kind), request.command)
-        case WriteDiscretes(first, values) | WriteRegisters(first, values):
-            _run(first, len(values), run_limit(first.kind), request.command)
+    if isinstance(request, _READ_RUNS):
+        count = request.count
+    elif isinstance(request, _WRITE_RUNS):
+        count = len(request.values)
+    else:
+        return
+    limit = run_limit(request.first.kind)
+    if count > limit:
+        _run(request.first, count, limit, request.command)
 
 
 def _discrete_run(first: Element, count: int, command: Command) -> None:

@@ -13,7 +13,9 @@ never lost. A frame that passes 508 bytes without ETX is dropped.
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Final, TypeVar
+from zlib import adler32
 
 from fatektool.errors import FrameError, UsageError
 from fatektool.protocol import facon_data
@@ -36,10 +38,13 @@ _MAX_BUFFER: Final = 1 << 16
 
 _PAIRS: Final = [b"%02X" % value for value in range(256)]
 _VALUES: Final = {pair: value for value, pair in enumerate(_PAIRS)}
+_FRAME: Final = re.compile(rb"\x02([0-9A-F]{2})([0-9A-F]{2})([^\x03]{0,%d})([^\x03]{2})\x03" % MAX_DATA)
 
 
 def lrc(data: bytes) -> bytes:
-    """The checksum of everything from STX to the last data byte, as two hex digits."""
+    """The checksum of everything from STX to the last data byte, at most a frame, as two hex digits."""
+    if data.isascii():  # Adler-32's low half is the sum modulo 65521, which such a frame does not reach
+        return _PAIRS[adler32(data, 0) & 0xFF]
     return _PAIRS[sum(data) & 0xFF]
 
 
@@ -61,7 +66,7 @@ def frame_bytes(station: int, command: int, data: bytes) -> bytes:
     if STX in data or ETX in data:
         raise UsageError("frame data: STX (02) and ETX (03) cannot stand inside a FACON frame")
     body = b"\x02%b%b%b" % (_PAIRS[station], _PAIRS[command], data)
-    return b"%b%b\x03" % (body, _PAIRS[sum(body) & 0xFF])
+    return b"%b%b\x03" % (body, lrc(body))
 
 
 class FaconDecoder:
@@ -95,6 +100,10 @@ class FaconDecoder:
         buffer = self._buffer
         if not buffer:
             return None
+        if (found := _FRAME.match(buffer)) and not buffer.rfind(STX, 0, found.end()):
+            parts = found.group(0, 1, 2, 3, 4)
+            del buffer[: found.end()]
+            return _checked(*parts)
         start = buffer.find(STX)
         if start:
             raise FrameError("noise outside a frame", raw=self._take(start if start > 0 else len(buffer)))
@@ -120,20 +129,27 @@ def parse_frame(raw: bytes) -> Frame:
     Raises:
         FrameError: a wrong checksum (then ``checksum`` is True), or no frame.
     """
+    if (found := _FRAME.fullmatch(raw)) and not raw.rfind(STX):
+        return _checked(*found.group(0, 1, 2, 3, 4))
     if not FRAMING_BYTES <= len(raw) <= MAX_FRAME or raw[:1] != STX or raw[-1:] != ETX:
         raise FrameError(
             f"no frame: expected STX, {FRAMING_BYTES} to {MAX_FRAME} bytes, ETX; got {len(raw)} bytes",
             raw=raw,
         )
-    station = _VALUES.get(raw[1:3])
-    command = _VALUES.get(raw[3:5])
-    if station is None or command is None:
-        raise FrameError("station or command is not two capital hex digits", raw=raw)
+    raise FrameError("station or command is not two capital hex digits", raw=raw)
+
+
+def _checked(raw: bytes, station: bytes, command: bytes, data: bytes, checksum: bytes) -> Frame:
+    """What is a frame but for its checksum, as one.
+
+    Raises:
+        FrameError: the checksum is wrong.
+    """
     expected = lrc(raw[:-3])
-    if raw[-3:-1] != expected:
-        got = raw[-3:-1].decode("latin-1")
+    if checksum != expected:
+        got = checksum.decode("latin-1")
         raise FrameError(f"checksum: expected {expected.decode()}, got {got!r}", raw=raw, checksum=True)
-    return Frame(station, command, raw[5:-3], raw)
+    return Frame(_VALUES[station], _VALUES[command], data, raw)
 
 
 class FaconCodec(FatekCommands):

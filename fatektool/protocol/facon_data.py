@@ -307,15 +307,15 @@ def parse_answer(request: Request[A], data: bytes) -> A:
     command = request.command
     fields = _FIELDS[command]
     chars = 1 + fields.chars(request)
+    if len(data) == chars and data.startswith(_NO_ERROR) and command != Command.LOOPBACK:
+        return cast("A", fields.parse_answer(request, data[1:]))
     one_letter_loopback = command == Command.LOOPBACK and chars == 1
     if len(data) == 1 and data != _NO_ERROR and data in HEX_DIGITS and not one_letter_loopback:
         raise refusal(int(data, 16), command, asked(request))
     if command == Command.LOOPBACK:
         return cast("A", data)
     if len(data) == chars:
-        if not data.startswith(_NO_ERROR):
-            raise FrameError(f"expected the error character 0 before the data, got {data[:1]!r}", raw=data)
-        return cast("A", fields.parse_answer(request, data[1:]))
+        raise FrameError(f"expected the error character 0 before the data, got {data[:1]!r}", raw=data)
     if command in _ERROR_CHARACTER_MAY_LACK and len(data) == chars - 1:
         return cast("A", fields.parse_answer(request, data))
     raise FrameError(

@@ -187,7 +187,8 @@ class MseriesCodec(FatekCommands):
     def encode(self, station: int, request: Request[A], number: int = 0) -> bytes:
         """The request as one frame for this station."""
         del number  # a frame has no room for it
-        require_commands(self, request.command)
+        if request.command not in self.commands:
+            require_commands(self, request.command)
         return frame_bytes(QUERY, station, request.command, mseries_data.request_data(request))
 
     def parse_request(self, frame: Frame) -> Request[object]:

@@ -29,6 +29,8 @@ VALUE_BYTES: Final = {1: 1, 16: 2, 32: 4}
 
 _SYMBOLS: Final = {symbol.encode(): symbol for symbol in KINDS}
 _LONGEST: Final = max(map(len, _SYMBOLS))
+_FIRST_LETTER: Final = ord("A") << 8
+"""Below this an address has no letter for its high byte."""
 
 
 def element_size(element: Element) -> int:
@@ -43,6 +45,8 @@ def element_bytes(element: Element) -> bytes:
         UsageError: the receiver would take it for another.
     """
     data = element.symbol.encode() + element.address.to_bytes(ADDRESS_BYTES, "big")
+    if element.address < _FIRST_LETTER:
+        return data
     seen = _symbol_at(data, 0)
     if seen != element.symbol:
         raise UsageError(

@@ -34,7 +34,8 @@ def resolve(host: str, port: int) -> Address:
         LineError: the name has none.
     """
     try:
-        found = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)
+        # As text it would load IDNA, which only other letters than ASCII's need.
+        found = socket.getaddrinfo(host.encode() if host.isascii() else host, port, type=socket.SOCK_STREAM)
     except (OSError, ValueError) as error:  # UnicodeError among them
         reason = getattr(error, "strerror", None) or str(error)
         raise LineError(
@@ -84,7 +85,7 @@ class SocketTransport(Transport):
 
     def _use(self, connected: socket.socket) -> socket.socket:
         connected.settimeout(0)
-        self._timeout_s = 0.0
+        self._timeout_s = self._asked_s = 0.0
         self._socket = connected
         self._readable = readable(connected.fileno())
         self._writable = writable(connected.fileno())
@@ -102,11 +103,9 @@ class SocketTransport(Transport):
         connected = self._socket
         if connected is None:
             raise TransportClosed(f"{self.name}: the connection is closed")
-        wait_s = ceil(min(timeout_s, _LONGEST_WAIT_S) / _TIMEOUT_STEP_S) * _TIMEOUT_STEP_S
         try:
-            if wait_s != self._timeout_s:  # rounded, so that it seldom changes: each change is a system call
-                connected.settimeout(max(0.0, wait_s))
-                self._timeout_s = wait_s
+            if timeout_s != self._asked_s:  # seldom
+                self._set_timeout(connected, timeout_s)
             data = self._receive(connected, max_bytes)
         except (TimeoutError, BlockingIOError):
             raise TransportTimeout(f"{self.name}: nothing came within {timeout_s:.3f} s") from None
@@ -116,10 +115,18 @@ class SocketTransport(Transport):
             raise TransportTimeout(f"{self.name}: nothing came")
         return data
 
+    def _set_timeout(self, connected: socket.socket, timeout_s: float) -> None:
+        """Rounded, so that it changes but seldom: each change is a system call."""
+        wait_s = max(0.0, ceil(min(timeout_s, _LONGEST_WAIT_S) / _TIMEOUT_STEP_S) * _TIMEOUT_STEP_S)
+        if wait_s != self._timeout_s:
+            connected.settimeout(wait_s)
+            self._timeout_s = wait_s
+        self._asked_s = timeout_s
+
     def write(self, data: bytes) -> None:
         """Send all of ``data``; connect first if the connection was lost."""
         connected = self._socket or self._use(self._connect())
-        rest = memoryview(data)
+        rest = data
         try:
             while rest:
                 try:
@@ -136,7 +143,7 @@ class SocketTransport(Transport):
     def drain(self) -> bytes:
         """Take what was received already."""
         connected = self._socket
-        if connected is None or not self._readable(0.0):  # as good as always
+        if connected is None or not self._readable(0.0):  # there is nothing, as good as always
             return b""
         taken = bytearray()
         with contextlib.suppress(OSError, TransportClosed):

@@ -33,7 +33,7 @@ def _waiter(descriptor: int, *, writing: bool) -> Callable[[float], bool]:
         poller.register(descriptor, select.POLLOUT if writing else select.POLLIN)
 
         def wait_poll(timeout_s: float) -> bool:
-            return bool(poller.poll(_bounded(timeout_s) * 1000))
+            return bool(poller.poll(_bounded(timeout_s) * 1000 if timeout_s else 0))
 
         return wait_poll
 

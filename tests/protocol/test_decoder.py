@@ -32,6 +32,34 @@ def test_lrc_counts_stx_and_not_etx() -> None:
     assert lrc(b"\x00\x0a") == b"0A"
 
 
+@pytest.mark.parametrize("byte", [0x00, 0x41, 0x7F, 0x80, 0xFF])
+def test_lrc_is_the_sum_at_every_length_of_a_frame(byte: int) -> None:
+    for length in range(506):
+        assert lrc(bytes([byte]) * length) == b"%02X" % (byte * length % 256)
+
+
+@given(st.binary(max_size=505))
+def test_lrc_is_the_sum_of_any_bytes(data: bytes) -> None:
+    assert lrc(data) == b"%02X" % (sum(data) % 256)
+
+
+@pytest.mark.parametrize(
+    ("raw", "dropped"),
+    [
+        (b"\x0201\x03\x03\x03", b"\x0201\x03"),  # a frame ends at the first ETX
+        (b"\x020140\x037\x03", b"\x020140\x03"),
+        (b"\x020140C\x03\x03", b"\x020140C\x03"),
+        (b"\x020140\x02C7\x03", b"\x020140"),
+    ],
+)
+def test_what_is_dropped_ends_where_a_frame_ends_or_begins(raw: bytes, dropped: bytes) -> None:
+    decoder = FACON.decoder()
+    decoder.feed(raw)
+    with pytest.raises(FrameError) as caught:
+        decoder.next_frame()
+    assert caught.value.raw == dropped
+
+
 @given(st.integers(0, 254), st.integers(0, 255), st.binary(max_size=500))
 def test_frame_round_trip(station: int, command: int, data: bytes) -> None:
     data = data.replace(b"\x02", b"").replace(b"\x03", b"")

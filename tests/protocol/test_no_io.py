@@ -23,6 +23,7 @@ ALLOWED = {
     "re",
     "struct",
     "typing",
+    "zlib",
 }
 BUILTINS = {"open", "print", "input", "breakpoint", "__import__", "exec", "eval"}
 LIBRARIES = {"modbus_pdu.py": "pymodbus"}
