@@ -17,10 +17,10 @@ from fatektool.cli.report import report_option, write_snapshot_report
 from fatektool.cli.snapshot_apply import apply_command
 from fatektool.errors import PlcError, UsageError
 from fatektool.jobs.selection import parse_items
-from fatektool.jobs.snapshot import Snapshot, load_snapshot, take_snapshot
+from fatektool.jobs.snapshot import load_snapshot, take_all, take_snapshot
 from fatektool.jobs.snapshot_compare import Change, compare_snapshots
 from fatektool.jobs.snapshot_formats import FORMATS, SUFFIXES, as_json, as_ndjson
-from fatektool.jobs.snapshot_spec import MAX_SPEC, Spec, SpecItem, everything, items_of, limits, parse_spec
+from fatektool.jobs.snapshot_spec import MAX_SPEC, Spec, items_of, parse_spec
 from fatektool.jobs.snapshot_store import Keep, append_line, encoded, require_lines, save_dated
 from fatektool.program.files import read_bounded, require_folder, require_place, write_whole
 from fatektool.protocol.commands import Command
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from fatektool.cli.output import Voice
-    from fatektool.client import Plc
 
 _LINE: Final = re.compile(r"\d[A-Za-z][\d.]{1,3}", re.ASCII)
 _LOOKED_AT: Final = 200
@@ -141,7 +140,7 @@ def take_command(
         )
     _require_places(output, folder, append, kept)
     with connection.open(voice, needs=(Command.DETAILED_STATUS,) if whole else ()) as plc:
-        snapshot = _take(plc, items, whole=whole)
+        snapshot = take_all(plc) if whole else take_snapshot(plc, items)
     text = FORMATS[form](snapshot)
     if folder is not None:
         voice.detail(f"saved {save_dated(snapshot, text, folder, suffix=SUFFIXES[form], keep=kept)}")
@@ -168,13 +167,6 @@ def selected(elements: tuple[str, ...], spec: Path | None, groups: tuple[str, ..
     if spec is not None:
         return parse_spec(read_bounded(spec, MAX_SPEC), str(spec), groups)
     return Spec(items_of(parse_items(elements)))
-
-
-def _take(plc: Plc, items: list[SpecItem], *, whole: bool) -> Snapshot:
-    if not whole:
-        return take_snapshot(plc, items)
-    system = plc.detailed_status().system
-    return take_snapshot(plc, everything(system), limits=limits(system))
 
 
 def _require_places(output: str | None, folder: Path | None, append: Path | None, kept: Keep | None) -> None:

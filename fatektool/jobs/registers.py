@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.batch import ask_all
@@ -27,12 +28,12 @@ from fatektool.protocol.commands import (
     WriteMixed,
     WriteRegisters,
 )
+from fatektool.protocol.elements import Element, Stretch
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from fatektool.client import Plc
-    from fatektool.protocol.elements import Element
 
 TYPICAL_TURNAROUND_S: Final = 0.010
 """A PLC answers once a program scan: some milliseconds. The plan hardly depends on it."""
@@ -49,21 +50,23 @@ class Reading:
         values: raw and unsigned, by element; a discrete is 0 or 1.
         errors: what the PLC said of the elements that it refused.
         requests: how many requests it took.
+        ended: when the last answer was there, on the transport's clock.
     """
 
     values: dict[Element, int] = field(default_factory=dict)
     errors: dict[Element, str] = field(default_factory=dict)
     requests: int = 0
+    ended: float = 0.0
 
 
 def read_elements(
-    plc: Plc, elements: Iterable[Element], *, limits: Mapping[str, int] | None = None
+    plc: Plc, elements: Iterable[Element | Stretch], *, limits: Mapping[str, int] | None = None
 ) -> Reading:
     """Read elements of any kind.
 
     Args:
         plc: the PLC.
-        elements: in any order.
+        elements: in any order, also in stretches, whose elements are named when all is read.
         limits: how many of a kind the PLC has, by symbol, where that is known.
 
     Raises:
@@ -73,11 +76,19 @@ def read_elements(
     reader = _Reader(plc, limits)
     reader.read(wanted)
     reading = reader.reading
-    reading.errors = {element: reading.errors[element] for element in wanted if element in reading.errors}
-    reading.values = {
-        element: reader.known.value(element) for element in wanted if element not in reading.errors
-    }
+    reading.ended = plc.link.transport.clock()
+    named_one_by_one = _each(wanted)
+    errors = reading.errors
+    reading.errors = {element: errors[element] for element in named_one_by_one if element in errors}
+    value = reader.known.value
+    reading.values = {element: value(element) for element in named_one_by_one if element not in errors}
     return reading
+
+
+def _each(elements: Iterable[Element | Stretch]) -> list[Element]:
+    """All elements, those of stretches too, once."""
+    parts = (each if isinstance(each, Stretch) else (each,) for each in elements)
+    return list(dict.fromkeys(chain.from_iterable(parts)))
 
 
 class _Reader:
@@ -89,9 +100,9 @@ class _Reader:
         self.known = Values()
         self.reading = Reading()
 
-    def read(self, elements: Sequence[Element]) -> None:
+    def read(self, elements: Sequence[Element | Stretch]) -> None:
         """Read all of these, or know why not."""
-        if len(elements) == 1:
+        if len(elements) == 1 and isinstance(elements[0], Element):
             self._read_alone(elements[0])
             return
         requests = plan_reads(
@@ -100,7 +111,7 @@ class _Reader:
         refused = self._ask(requests)
         if not refused:
             return
-        missing = [element for element in sorted(elements) if element not in self.known]
+        missing = [element for element in sorted(_each(elements)) if element not in self.known]
         for part in by_request(missing, refused):
             self._take_apart(part)
 

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.errors import DataError, UsageError
 from fatektool.jobs.registers import read_elements
+from fatektool.jobs.snapshot_spec import everything, items_in, limits
 from fatektool.jobs.times import utc
 from fatektool.program.files import file_error
 from fatektool.program.strict_json import read_json
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
 
     from fatektool.client import Plc
     from fatektool.jobs.snapshot_spec import SpecItem
+    from fatektool.protocol.elements import Stretch
 
 SCHEMA: Final = "fatektool.snapshot/1"
 MAX_SNAPSHOT: Final = 64 << 20
@@ -74,24 +76,43 @@ class Snapshot:
         return {"schema": SCHEMA, **{name: getattr(self, name) for name in self.__slots__}}
 
 
-def take_snapshot(
-    plc: Plc, items: Sequence[SpecItem], *, limits: Mapping[str, int] | None = None
-) -> Snapshot:
+def take_snapshot(plc: Plc, items: Sequence[SpecItem]) -> Snapshot:
     """Read all items; one that the PLC refuses is None and listed under ``errors``.
 
     Args:
         plc: the PLC.
         items: what to read.
-        limits: how many discretes of each kind the PLC has, where that is known.
 
     Raises:
         LineError: no answer.
     """
+    return _snapshot(plc, [item.item.element for item in items], lambda: items, None)
+
+
+def take_all(plc: Plc) -> Snapshot:
+    """Read all that the PLC says it has (53).
+
+    Raises:
+        LineError: no answer.
+        DataError: its answer to 53 has a layout that no paper describes.
+    """
+    system = plc.detailed_status().system
+    stretches = everything(system)
+    return _snapshot(plc, stretches, lambda: items_in(stretches), limits(system))
+
+
+def _snapshot(
+    plc: Plc,
+    wanted: Sequence[Element | Stretch],
+    items_of: Callable[[], Sequence[SpecItem]],
+    within: Mapping[str, int] | None,
+) -> Snapshot:
     clock = plc.link.transport.clock
     time, began = utc(), clock()
     tells = Command.BRIEF_STATUS in plc.link.codec.commands
     running = plc.brief_status().flags.running if tells else None
-    reading = read_elements(plc, [item.item.element for item in items], limits=limits)
+    reading = read_elements(plc, wanted, limits=within)
+    items = items_of()  # not before all is read: there may be many thousands
     values: dict[str, Value | None] = {}
     elements: dict[str, dict[str, Any]] = {}
     errors: dict[str, str] = {}
@@ -113,7 +134,7 @@ def take_snapshot(
         plc.link.station,
         plc.link.codec.name,
         running,
-        round(clock() - began, 3),
+        round(reading.ended - began, 3),
         reading.requests + tells,
         values,
         elements,

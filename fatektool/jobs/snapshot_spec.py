@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any, Final
 from fatektool.errors import DataError, UsageError
 from fatektool.jobs.selection import Item, parse_item
 from fatektool.program.strict_toml import read_toml
-from fatektool.protocol.elements import Element
+from fatektool.protocol.elements import Element, Stretch
 from fatektool.protocol.values import NUMBERS, default_type
 
 if TYPE_CHECKING:
@@ -180,19 +180,25 @@ def _short(value: object) -> str:
         return "a very long number"
 
 
-def everything(system: System) -> list[SpecItem]:
+def everything(system: System) -> list[Stretch]:
     """All that 53 says the PLC has: discretes, registers, timers and counters.
 
     L relays have no element on the link.
     """
     counts = limits(system)
     counts |= {"RT": system.timers, "RC": system.counters, "R": system.r_registers, "D": system.d_registers}
-    items = []
-    for symbol, count in counts.items():
-        for address in range(min(count, Element(symbol, 0).kind.last + 1)):
-            element = Element(symbol, address)
-            items.append(SpecItem(Item(str(element), element, default_type(element.kind.bits))))
-    return items
+    firsts = [(Element(symbol, 0), count) for symbol, count in counts.items()]
+    return [Stretch(first, min(count, first.kind.last + 1)) for first, count in firsts if count]
+
+
+def items_in(stretches: Iterable[Stretch]) -> list[SpecItem]:
+    """An item for every element of some stretches, of the type that it has unless another is named."""
+    return [
+        SpecItem(Item(str(element), element, kind))
+        for stretch in stretches
+        for kind in (default_type(stretch.first.kind.bits),)
+        for element in stretch
+    ]
 
 
 def limits(system: System) -> dict[str, int]:

@@ -15,10 +15,12 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from dataclasses import dataclass, field
+from itertools import islice
+from operator import sub
 from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.protocol.commands import ReadDiscretes, ReadMixed, ReadRegisters, Request
-from fatektool.protocol.elements import KINDS, Element
+from fatektool.protocol.elements import KINDS, Element, Stretch
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -91,7 +93,7 @@ class Line:
 
     def __post_init__(self) -> None:
         self.ends = _stretch_ends(self.firsts, self.lasts, self.stride)
-        self.uneven = len({last - first for first, last in zip(self.firsts, self.lasts, strict=True)}) > 1
+        self.uneven = len(set(map(sub, self.lasts, self.firsts))) > 1
 
     def __len__(self) -> int:
         return len(self.firsts)
@@ -110,23 +112,31 @@ class Line:
         return self.lasts[self.ends[bisect_right(self.ends, place)] - 1] + self.stride - self.firsts[place]
 
 
-def lines_of(elements: Iterable[Element], limits: Mapping[str, int] | None) -> list[Line]:
+def lines_of(elements: Iterable[Element | Stretch], limits: Mapping[str, int] | None) -> list[Line]:
     """The lines on which the elements lie, one behind the other.
 
     Args:
-        elements: of any kind, in any order, also twice.
+        elements: of any kind, in any order, also twice; stretches of them are taken as such.
         limits: up to where gaps may be read over, by symbol, if that is before the largest address; None if
             nothing may be touched that is not wanted.
     """
     spans: dict[tuple[str, int], set[tuple[int, int]]] = {}
-    for element in elements:
-        symbol, first, last = _span(element)
-        spans.setdefault((symbol, first % KINDS[symbol].stride), set()).add((first, last))
+    stretches: dict[tuple[str, int], list[tuple[range, range]]] = {}
+    for each in elements:
+        if isinstance(each, Stretch):
+            symbol, first, last = _span(each.first)
+            past, stride = each.count * each.first.kind.stride, each.first.kind.stride
+            ranges = range(first, first + past, stride), range(last, last + past, stride)
+            stretches.setdefault((symbol, first % KINDS[symbol].stride), []).append(ranges)
+        else:
+            symbol, first, last = _span(each)
+            spans.setdefault((symbol, first % KINDS[symbol].stride), set()).add((first, last))
     lines: list[Line] = []
-    for (symbol, _), found in sorted(spans.items()):
+    for key in sorted(spans.keys() | stretches.keys()):
+        symbol = key[0]
         kind = KINDS[symbol]
         limit = 0 if limits is None else min(limits.get(symbol, kind.last + 1), kind.last + 1)
-        firsts, lasts = _outermost(found)
+        firsts, lasts = _in_order(spans.get(key, set()), stretches.get(key, []))
         begin = 0
         ends = _stretch_ends(firsts, lasts, kind.stride)
         for end, after in zip(ends, [*ends[1:], 0], strict=True):
@@ -150,6 +160,16 @@ def lines_of(elements: Iterable[Element], limits: Mapping[str, int] | None) -> l
     return lines
 
 
+def _in_order(
+    spans: set[tuple[int, int]], stretches: list[tuple[range, range]]
+) -> tuple[list[int], list[int]]:
+    """First and last addresses of all spans of a line; a stretch alone is in order already."""
+    if len(stretches) == 1 and not spans:
+        ((firsts, lasts),) = stretches
+        return list(firsts), list(lasts)
+    return _outermost(spans.union(*(zip(*ranges, strict=True) for ranges in stretches)))
+
+
 def _outermost(spans: set[tuple[int, int]]) -> tuple[list[int], list[int]]:
     """First and last addresses of the spans that lie within no other."""
     firsts: list[int] = []
@@ -162,8 +182,9 @@ def _outermost(spans: set[tuple[int, int]]) -> tuple[list[int], list[int]]:
 
 
 def _stretch_ends(firsts: list[int], lasts: list[int], stride: int) -> list[int]:
-    count = len(firsts)
-    return [place for place in range(1, count) if firsts[place] > lasts[place - 1] + stride] + [count]
+    neighbours = zip(islice(firsts, 1, None), lasts, strict=False)
+    found = [place for place, (first, before) in enumerate(neighbours, 1) if first - before > stride]
+    return [*found, len(firsts)]
 
 
 class Values:
@@ -175,7 +196,7 @@ class Values:
 
     def __init__(self) -> None:
         self._answers = 0
-        self._atoms: dict[Atom, dict[int, int]] = {}  # by answer
+        self._atoms: dict[Atom, dict[int, int]] = {}  # by answer, the last one last
 
     def take(self, request: Request[Any], answer: tuple[Any, ...]) -> None:
         """Keep what a request's answer tells."""
@@ -184,8 +205,15 @@ class Values:
             for element, value in zip(request.elements, answer, strict=True):
                 self._keep(element, value)
         elif isinstance(request, ReadDiscretes | ReadRegisters):
+            first = request.first
+            symbol, at, last = _span(first)
+            if at == last:  # an atom each
+                stride = first.kind.stride
+                for place, value in enumerate(answer):
+                    self._atoms.setdefault((symbol, at + place * stride), {})[self._answers] = int(value)
+                return
             for place, value in enumerate(answer):
-                self._keep(request.first.after(place), int(value))
+                self._keep(first.after(place), int(value))
 
     def _keep(self, element: Element, value: int) -> None:
         for atom, bits in parts_of(element, value).items():
@@ -203,8 +231,12 @@ class Values:
         Raises:
             KeyError: no answer told of it.
         """
+        symbol, first, last = _span(element)
+        if first == last:
+            told = self._atoms[symbol, first]
+            return told[next(reversed(told))]
         answers = self._answers_with(element)
         if not answers:
             raise KeyError(element)
-        last = max(answers)
-        return value_of(element, {atom: self._atoms[atom][last] for atom in atoms_of(element)})
+        newest = max(answers)
+        return value_of(element, {atom: self._atoms[atom][newest] for atom in atoms_of(element)})

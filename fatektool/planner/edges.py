@@ -98,10 +98,12 @@ class Edges:
 
     def _register_items(self, line: Line, place: int) -> Iterator[Edge]:
         kind = KINDS[line.symbol]
-        near = 2 * self._costs.most(line.symbol) * kind.stride
-        if not line.uneven and line.rest_of_stretch(place) > near:
-            return
         first, last = line.firsts[place], line.lasts[place]
+        # A full run of single registers costs no more than whatever else begins here: none of its words is
+        # cheaper in a mixed request, and a mixed request holds no more of them.
+        near = self._costs.most(line.symbol) * kind.stride * (1 if first == last else 2)
+        if not line.uneven and line.rest_of_stretch(place) >= near:
+            return
         double = f"D{line.symbol}"
         if last > first:
             yield self._item(line, place + 1, double, first)

@@ -9,7 +9,7 @@ from fatektool.planner.costs import Costs
 from fatektool.planner.edges import Edges
 from fatektool.planner.paths import Run, least_path
 from fatektool.protocol.commands import ReadDiscretes, ReadMixed, ReadRegisters, Request
-from fatektool.protocol.elements import Element
+from fatektool.protocol.elements import Element, Stretch
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def plan_reads(
-    elements: Iterable[Element],
+    elements: Iterable[Element | Stretch],
     codec: Codec,
     *,
     turnaround: float = 0.0,
@@ -28,7 +28,7 @@ def plan_reads(
     """The requests that read these elements with the least line time.
 
     Args:
-        elements: of any kind, in any order, also twice.
+        elements: of any kind, in any order, also twice; stretches of them are planned much faster.
         codec: the protocol.
         turnaround: the PLC's time to answer, in bytes at this baud.
         limits: how many of a kind the PLC has, by symbol, where that is known; beyond what is wanted nothing
@@ -44,15 +44,23 @@ def plan_reads(
     return requests
 
 
-def neighbourhoods(elements: Iterable[Element], codec: Codec, *, writes: bool) -> list[list[Element]]:
-    """Elements by what can share a run.
+def neighbourhoods(
+    elements: Iterable[Element | Stretch], codec: Codec, *, writes: bool
+) -> list[list[Element | Stretch]]:
+    """Elements by what can share a run; a stretch that cannot, in its elements.
 
     Raises:
         UsageError: the protocol cannot name one of them.
     """
-    found: dict[int, list[Element]] = {}
-    for element in elements:
-        found.setdefault(codec.neighbourhood(element, writes=writes), []).append(element)
+    found: dict[int, list[Element | Stretch]] = {}
+    for each in elements:
+        if isinstance(each, Stretch):
+            number = codec.neighbourhood(each.first, writes=writes)
+            if number == codec.neighbourhood(each.last, writes=writes):
+                found.setdefault(number, []).append(each)
+                continue
+        for element in each if isinstance(each, Stretch) else [each]:
+            found.setdefault(codec.neighbourhood(element, writes=writes), []).append(element)
     return [found[number] for number in sorted(found)]
 
 

@@ -16,9 +16,12 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,3 +131,28 @@ class Element:
                 element=text,
             )
         return cls(match[1].upper(), int(match[2]))
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """Neighbours of one kind, so many from a first one on: all registers R of a PLC without naming each.
+
+    Raises:
+        UsageError: there is no such last one, or not even one.
+    """
+
+    first: Element
+    count: int
+
+    def __post_init__(self) -> None:
+        if self.count < 1:
+            raise UsageError(f"from {self.first}: expected 1 element or more, got {self.count}")
+        self.first.after(self.count - 1)
+
+    @property
+    def last(self) -> Element:
+        """The last of them."""
+        return self.first.after(self.count - 1)
+
+    def __iter__(self) -> Iterator[Element]:
+        return map(self.first.after, range(self.count))

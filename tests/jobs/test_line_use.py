@@ -14,8 +14,7 @@ import pytest
 from fatektool.client import Plc
 from fatektool.jobs.backup import backup
 from fatektool.jobs.restore import RestoreOptions, carry_out, plan_restore
-from fatektool.jobs.snapshot import take_snapshot
-from fatektool.jobs.snapshot_spec import everything, limits
+from fatektool.jobs.snapshot import take_all
 from fatektool.jobs.verify import verify
 from fatektool.link import Link
 from fatektool.program.image import Program
@@ -70,8 +69,7 @@ def put(plc: Plc, found: Backup, *, changed_only: bool) -> None:
 
 
 def snapshot_all(plc: Plc) -> None:
-    system = plc.detailed_status().system
-    assert not take_snapshot(plc, everything(system), limits=limits(system)).errors
+    assert not take_all(plc).errors
 
 
 JOBS: dict[str, tuple[Callable[[Plc, Backup], object], int, int]] = {

@@ -12,10 +12,9 @@ from fatektool.cli import run, snapshot_apply
 from fatektool.errors import DataError
 from fatektool.jobs.registers import read_elements
 from fatektool.jobs.selection import parse_items
-from fatektool.jobs.snapshot import load_snapshot, take_snapshot
+from fatektool.jobs.snapshot import load_snapshot, take_all
 from fatektool.jobs.snapshot_apply import apply_plan, plan_apply
 from fatektool.jobs.snapshot_formats import as_json
-from fatektool.jobs.snapshot_spec import everything, limits
 from fatektool.protocol.elements import Element
 from fatektool.simulator.build import build_simulation
 from tests.cli.terminal import Terminal
@@ -47,8 +46,7 @@ def filled() -> Simulated:
 
 def test_all_of_one_plc_makes_another_equal() -> None:
     one, other = filled(), small()
-    system = one.plc.detailed_status().system
-    snapshot = take_snapshot(one.plc, everything(system), limits=limits(system))
+    snapshot = take_all(one.plc)
     other.plc.write_registers(Element("D", 3000), [1, 2, 3])
     other.plc.disable(Element("M", 3))
     plan = plan_apply(other.plc, snapshot)

@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fatektool.errors import DataError, FatektoolError
-from fatektool.jobs.snapshot import take_snapshot
-from fatektool.jobs.snapshot_spec import Spec, everything, limits, parse_spec
+from fatektool.jobs.snapshot import take_all, take_snapshot
+from fatektool.jobs.snapshot_spec import Spec, parse_spec
 from fatektool.protocol.elements import Element
 from fatektool.protocol.values import ValueType
 from fatektool.simulator.models import MODELS
@@ -159,9 +159,8 @@ def test_on_the_command_line(plant: Plant, place: Path) -> None:
 @pytest.mark.parametrize("model", MODELS)
 def test_all_of_every_model(model: str) -> None:
     made = small(model=model)
-    system = made.plc.detailed_status().system
     before = made.plc.link.counters.exchanges
-    snapshot = take_snapshot(made.plc, everything(system), limits=limits(system))
+    snapshot = take_all(made.plc)
     assert snapshot.errors == {}
     what = made.device.model
     assert len(snapshot.values) == (
