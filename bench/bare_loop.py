@@ -13,7 +13,6 @@ import sys
 import time
 from typing import TYPE_CHECKING
 
-from exchanges import reading as requests  # noqa: F401
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fatektool.cli.output import Voice
+    from fatektool.history.history import History
 
 
 @click.group("fleet", epilog="Example: fatektool fleet backup --dir backups --jobs 8 --select night")
@@ -79,12 +81,19 @@ def backup_command(
         raise UsageError("--push goes with --history DIR")
     if folder is not None:
         require_folder(folder)
-    work = backup_work(voice, folder, history, single_pass=single_pass, any_header=any_header)
-    document, interrupted = run_fleet("backup", orders, alarms, voice, work)
+    with nullcontext() if history is None else _opened(history) as kept:
+        work = backup_work(voice, folder, kept, single_pass=single_pass, any_header=any_header)
+        document, interrupted = run_fleet("backup", orders, alarms, voice, work)
     if history is not None and remote is not None and not interrupted:
         document["push"] = _push(history, remote, voice)
     code = ended("backup", document, voice, interrupted=interrupted)
     return code or int("error" in document.get("push", {}))
+
+
+def _opened(folder: Path) -> History:
+    from fatektool.history.history import History
+
+    return History(folder)
 
 
 def _push(history: Path, remote: str, voice: Voice) -> dict[str, Any]:

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
     from fatektool.cli.output import Voice
     from fatektool.client import Plc
+    from fatektool.history.history import History
     from fatektool.inventory.entries import PlcEntry
     from fatektool.jobs.fleet import Turn
     from fatektool.jobs.snapshot_store import Keep
@@ -76,7 +77,7 @@ def status_work(voice: Voice, *, brief: bool) -> Callable[[PlcEntry, Turn[Done]]
 def backup_work(
     voice: Voice,
     folder: Path | None,
-    history: Path | None,
+    history: History | None,
     *,
     single_pass: bool,
     any_header: bool,
@@ -86,11 +87,11 @@ def backup_work(
     Args:
         voice: is told of what is odd.
         folder: where NAME.json is written; None for nowhere.
-        history: the git repository that keeps what changed; None for none.
+        history: keeps what changed, open as long as the round lasts; None for none.
         single_pass: as for ``backup``.
         any_header: as for ``backup``.
     """
-    record = None if history is None else _recorder(history, voice)
+    kept_in = None if history is None else history.folder
 
     def work(entry: PlcEntry, turn: Turn[Done]) -> Done:
         began = time.monotonic()
@@ -105,29 +106,22 @@ def backup_work(
         if path is not None:
             changed = _changed(path, found, voice)
             save_backup(found, path, overwrite=True)
-        if record is not None:
-            changed = record(entry.name, found)
-        document = saved_document(found, path or history or Path(), time.monotonic() - began)
+        if history is not None:
+            changed = _record(history, entry.name, found, voice)
+        document = saved_document(found, path or kept_in or Path(), time.monotonic() - began)
         said = {None: "first backup", True: "CHANGED", False: "unchanged"}[changed]
         words = f"{said}, {found.program.header.signature or 'unknown'}, {found.program.ladder_words} words"
-        return Done(0, document, words, path or history, changed)
+        return Done(0, document, words, path or kept_in, changed)
 
     return work
 
 
-def _recorder(folder: Path, voice: Voice) -> Callable[[str, Backup], bool | None]:
-    """Keeps a backup in the history; says whether it is another than the one there, None for the first."""
-    from fatektool.history.history import History
-
-    history = History(folder)
-
-    def record(name: str, backup: Backup) -> bool | None:
-        found = history.record(name, backup)
-        for warning in found.warnings:
-            voice.of(name).warn(warning)
-        return None if found.changes is None else found.revision is not None
-
-    return record
+def _record(history: History, name: str, backup: Backup, voice: Voice) -> bool | None:
+    """Keep a backup in the history; whether it is another than the one there, None for the first."""
+    found = history.record(name, backup)
+    for warning in found.warnings:
+        voice.of(name).warn(warning)
+    return None if found.changes is None else found.revision is not None
 
 
 def _changed(path: Path, found: Backup, voice: Voice) -> bool | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial, wraps
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -164,7 +164,8 @@ def run_fleet(
             None if done is None else done.changed,
             None if done is None else done.file,
         )
-        turn.result = None  # a document of all that differs may be large
+        # A document may be large, and an error holds the frames with what was read so far.
+        turn.result = turn.error = None
         view.line(told)
         alarms.tell(job, told, voice)
 
@@ -262,6 +263,8 @@ def _told(entry: PlcEntry, turn: Turn[Done]) -> Told:
             up = False
         elif isinstance(error, PlcError):
             up = True
+    if done is not None:  # those who are told may keep it, and look at its document no more
+        done = replace(done, document={})
     return Told(entry.name, entry.target, entry.station, code, words, turn.duration_s or 0.0, up, done)
 
 

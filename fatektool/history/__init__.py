@@ -9,8 +9,10 @@ work tree to go astray, and nothing for a killed run to leave half written::
 Who looks for what::
 
     history      record, log, show, export: what a caller uses     checking     is all of it whole?
-    repository   reading, every object proven by its hash          revisions    'a1b2c3d', '2026-11-22', '~1'
-    writing      objects and branch, in an order that holds        messages     who and what, in words
-    packing      many small files into one                         names        what a PLC may be called
-    push         a copy in another repository
+    recording    is it another program? Then a commit              revisions    'a1b2c3d', '2026-11-22', '~1'
+    repository   reading, every object proven by its hash          messages     who and what, in words
+    writing      the lock and the branch, in an order that holds   names        what a PLC may be called
+    trees        what stands in a tree                             packing      many small files into one
+    loose        an object as a file                               push         a copy in another repository
+    commits      a commit in values
 """

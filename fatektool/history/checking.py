@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from fatektool.errors import DataError
 from fatektool.history.names import name_of
 from fatektool.history.repository import Repository
 from fatektool.history.revisions import SHORT
+from fatektool.history.trees import FOLDER, SUBMODULE, files, item
 from fatektool.program.archive import Backup
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from fatektool.history.repository import Commit
-
-_FOLDER: Final = 0o040000
-_SUBMODULE: Final = 0o160000
+    from fatektool.history.commits import Commit
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +72,7 @@ class _Check:
     def __init__(self, repository: Repository) -> None:
         self.repository = repository
         self.seen: set[str] = set()
+        self.looked_at: set[bytes] = set()
         self.programs = 0
         self.faults: list[Fault] = []
 
@@ -82,9 +81,9 @@ class _Check:
         names: tuple[str, ...] = ()
         for number, commit in enumerate(commits, 1):
             try:
+                found = self.root(commit)
                 if number == 1:
-                    names = tuple(sorted(self.repository.files(commit.tree)))
-                self.tree(commit, commit.tree, root=True)
+                    names = tuple(sorted(files(found)))
             except DataError as error:
                 self.faults.append(Fault(commit.revision, None, error.message))
             progress("checking", number, len(commits))
@@ -113,22 +112,33 @@ class _Check:
             waiting += commit.parents
         return found
 
-    def tree(self, commit: Commit, sha: str, *, root: bool = False) -> None:
-        """A tree and what is in it, each object once."""
-        if sha in self.seen:
-            return
-        self.seen.add(sha)
-        for path, mode, item in self.repository.tree(sha).items():
-            child = item.decode()
-            if child in self.seen or mode == _SUBMODULE:
+    def root(self, commit: Commit) -> list[bytes]:
+        """A commit's tree: what is in it, but for what stood in the trees after it too. Gives its entries."""
+        found = self.entries(commit.tree)
+        new = set(found) - self.looked_at
+        self.looked_at |= new
+        self.items(commit, sorted(new), root=True)
+        return found
+
+    def entries(self, tree: str) -> list[bytes]:
+        """The entries of a tree; none the second time."""
+        if tree in self.seen:
+            return []
+        self.seen.add(tree)
+        return self.repository.entries(tree)
+
+    def items(self, commit: Commit, found: list[bytes], *, root: bool = False) -> None:
+        """What is in a tree, each object once."""
+        for mode, path, sha in map(item, found):
+            if sha in self.seen or mode == SUBMODULE:
                 continue
             name = name_of(path) if root else None
             try:
-                if mode == _FOLDER:
-                    self.tree(commit, child)
+                if mode == FOLDER:
+                    self.items(commit, self.entries(sha))
                 else:
-                    self.seen.add(child)
-                    self.file(commit, name, self.repository.read(child, "blob"))
+                    self.seen.add(sha)
+                    self.file(commit, name, self.repository.read(sha, "blob"))
             except DataError as error:
                 self.faults.append(Fault(commit.revision, name, error.message))
 

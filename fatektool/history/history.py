@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import threading
 import time
-from dataclasses import dataclass
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
-from dulwich.objects import Blob, ObjectID, Tree
-from dulwich.objects import Commit as GitCommit
-
-from fatektool.errors import DataError, FatektoolError, UsageError
-from fatektool.history import messages
-from fatektool.history.names import file_of, require_name
+from fatektool.errors import FatektoolError, UsageError
+from fatektool.history.names import require_name
 from fatektool.history.packing import is_due, pack_loose
-from fatektool.history.repository import Repository
+from fatektool.history.recording import Recorded, look, unchanged, write
+from fatektool.history.repository import Repository, is_repository
 from fatektool.history.revisions import SHORT, changes_of, resolve
-from fatektool.history.writing import move_branch, write_object, writing
+from fatektool.history.trees import file_in, files
+from fatektool.history.writing import writing
 from fatektool.program.archive import Backup
 from fatektool.program.compare import Comparison, compare
 from fatektool.program.files import write_whole
@@ -24,29 +23,13 @@ from fatektool.program.files import write_whole
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterator
     from pathlib import Path
+    from typing import Self
 
-    from fatektool.history.repository import Commit
+    from fatektool.history.commits import Commit
 
-_FILE: Final = 0o100644
+__all__ = ["Change", "History", "Recorded", "Stored"]
 
-
-@dataclass(frozen=True, slots=True)
-class Recorded:
-    """What became of a backup.
-
-    Attributes:
-        name: the PLC.
-        revision: the new commit, 40 hex digits; None if the program is the one that is there already.
-        subject: in words: ``press-3: 4 words in 2 pages changed``.
-        changes: the old program against the new one; None for a first backup.
-        warnings: what the user should know: a damaged file before this one.
-    """
-
-    name: str
-    revision: str | None
-    subject: str
-    changes: Comparison | None
-    warnings: tuple[str, ...] = ()
+_PATIENCE_S: Final = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +66,8 @@ class Stored:
 class History:
     """The programs of many PLCs, and how they changed. Threads may share one.
 
+    As a context it keeps the repository open from one ``record`` to the next: for a round of many PLCs.
+
     Args:
         folder: a bare git repository; made by the first ``record``.
         wait_s: how long ``record`` waits for another process that writes it, in seconds.
@@ -94,6 +79,19 @@ class History:
         self._wait_s = wait_s
         self._clock = clock
         self._turn = threading.Lock()
+        self._keeps = False
+        self._kept: Repository | None = None
+
+    def __enter__(self) -> Self:
+        self._keeps = True
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._keeps = False
+        # A thread that waits for another process may keep it: nobody waits for that one at the end.
+        if self._turn.acquire(timeout=_PATIENCE_S):
+            self._close()
+            self._turn.release()
 
     def record(self, name: str, backup: Backup) -> Recorded:
         """Keep a backup, if its program is another than the one that the history holds for this PLC.
@@ -110,61 +108,42 @@ class History:
             PortBusy: another process writes it, and goes on.
         """
         require_name(name)
-        with self._turn, writing(self.folder, self._wait_s), Repository(self.folder) as repository:
-            found = None
-            while found is None:  # once more if somebody pushed into it meanwhile
-                found = self._try_to_record(repository, name, backup)
-            if found.revision is None or not is_due(repository):
+        with self._turn:
+            seen = None
+            if is_repository(self.folder):
+                with self._open() as repository:
+                    seen = look(repository, name, backup)
+                if seen.same:
+                    return unchanged(name, seen)
+            with writing(self.folder, self._wait_s), self._open() as repository:
+                now = int(self._clock())
+                found = write(repository, name, backup, seen, now=now, wait_s=self._wait_s)
+                if found.revision is None or not is_due(repository):
+                    return found
+                try:
+                    pack_loose(repository)
+                except FatektoolError as error:  # the backup is kept, and the next run tries again
+                    warnings = (*found.warnings, f"the history could not be packed: {error}")
+                    return replace(found, warnings=warnings)
                 return found
-            try:
-                pack_loose(repository)
-            except FatektoolError as error:  # the backup is kept, and the next run tries again
-                warning = f"the history could not be packed: {error}"
-                return Recorded(found.name, found.revision, found.subject, found.changes, (warning,))
-            return found
 
-    def _try_to_record(self, repository: Repository, name: str, backup: Backup) -> Recorded | None:
-        tip = repository.tip()
-        last = None if tip is None else repository.commit(tip)
-        tree = Tree() if last is None else repository.tree(last.tree)
-        files = {} if last is None else repository.files(last.tree)
-        old: Backup | None = None
-        warnings: tuple[str, ...] = ()
-        if name in files:
-            try:
-                old = Backup.parse(repository.read(files[name], "blob"), name)
-            except DataError as error:  # no reason to lose today's backup too
-                warnings = (f"the backup before could not be read: {error}",)
-        elif twin := next((other for other in files if other.casefold() == name.casefold()), None):
-            raise UsageError(
-                f"{name!r} and {twin!r} of the history {self.folder} would share a file",
-                hint="choose another name",
-            )
-        changes = None if old is None else compare(old.program, backup.program)
-        if changes is not None and changes.same:
-            return Recorded(name, None, f"{name}: unchanged", changes)
-        subject = messages.subject(name, changes, damaged=bool(warnings))
-        blob = Blob.from_string(backup.to_bytes())
-        tree[file_of(name)] = (_FILE, blob.id)
-        commit = self._commit(tree, tip, name, backup)
-        commit.message = messages.message(subject, changes, old, backup)
-        for item in (blob, tree, commit):
-            write_object(self.folder, item)
-        new = commit.id.decode()
-        moved = move_branch(
-            self.folder, repository.branch(), new, lambda: repository.tip() == tip, wait_s=self._wait_s
-        )
-        return Recorded(name, new, subject, changes, warnings) if moved else None
+    @contextmanager
+    def _open(self) -> Iterator[Repository]:
+        """The repository: the one that is kept, until something is wrong with it."""
+        repository = self._kept or Repository(self.folder)
+        self._kept = repository
+        try:
+            yield repository
+        except BaseException:
+            self._close()
+            raise
+        if not self._keeps:
+            self._close()
 
-    def _commit(self, tree: Tree, parent: str | None, name: str, backup: Backup) -> GitCommit:
-        now = int(self._clock())
-        commit = GitCommit()
-        commit.tree = tree.id
-        commit.parents = [] if parent is None else [ObjectID(parent.encode())]
-        commit.author, commit.author_time = messages.author(name, backup), messages.read_at(backup, now)
-        commit.committer, commit.commit_time = messages.committer(), now
-        commit.author_timezone = commit.commit_timezone = 0
-        return commit
+    def _close(self) -> None:
+        if self._kept is not None:
+            self._kept.close()
+            self._kept = None
 
     def names(self) -> list[str]:
         """The PLCs whose programs it holds now.
@@ -188,20 +167,15 @@ class History:
             DataError: it is damaged, or no history.
         """
         with Repository(self.folder) as repository:
-            after: Commit | None = None
-            files: dict[str, str] = {}
-            known = name is None
-            for commit in repository.chain(repository.tip()):
-                before = files if after and commit.tree == after.tree else repository.files(commit.tree)
-                for change in _changes(before, files, after, name):
-                    known = True
-                    yield change
-                after, files = commit, before
-            for change in _changes({}, files, after, name):
+            if name is None:
+                yield from _changes(repository)
+                return
+            known = False
+            for commit, blob in changes_of(name, repository, repository.tip()):
                 known = True
-                yield change
+                yield Change(name, commit, blob is None)
             if not known:
-                raise self._unknown(str(name))
+                raise self._unknown(name)
 
     def show(self, name: str, revision: str = "HEAD") -> Stored:
         """A PLC's backup as it was at a revision.
@@ -218,11 +192,11 @@ class History:
             if repository.tip() is None:
                 raise self._unknown(name)
             commit = resolve(repository, name, revision)
-            blob = repository.files(commit.tree).get(name)
+            blob = file_in(repository.tree(commit.tree), name)
             if blob is None:
                 raise self._unknown(name, f" at {revision} ({commit.revision[:SHORT]})")
             data = repository.read(blob, "blob")
-            recorded = next(changes_of(name, repository, commit.revision), commit)
+            recorded, _ = next(changes_of(name, repository, commit.revision), (commit, blob))
             return Stored(name, recorded, data, Backup.parse(data, f"{name}@{commit.revision[:SHORT]}"))
 
     def diff(self, name: str, a: str = "~1", b: str = "HEAD") -> Comparison:
@@ -255,12 +229,24 @@ class History:
         )
 
 
-def _changes(
-    before: dict[str, str], after: dict[str, str], commit: Commit | None, name: str | None
-) -> Iterator[Change]:
-    """What one commit did, to all PLCs or to one."""
-    if commit is None or before is after:
-        return
-    for each in sorted(before.keys() | after.keys()) if name is None else [name]:
-        if before.get(each) != after.get(each):
-            yield Change(each, commit, each not in after)
+def _changes(repository: Repository) -> Iterator[Change]:
+    """What each commit did, newest first; each tree is read once, and what two have in common passed over."""
+    after: Commit | None = None
+    new: set[bytes] = set()
+    for commit in repository.chain(repository.tip()):
+        if after is None or commit.tree != after.tree:
+            old = set(repository.entries(commit.tree))
+            if after is not None:
+                yield from _between(old, new, after)
+            new = old
+        after = commit
+    if after is not None:
+        yield from _between(set(), new, after)
+
+
+def _between(old: set[bytes], new: set[bytes], commit: Commit) -> Iterator[Change]:
+    """What one commit did, from the entries of the tree before and of its own."""
+    before, after = files(old - new), files(new - old)
+    for name in sorted(before.keys() | after.keys()):
+        if before.get(name) != after.get(name):
+            yield Change(name, commit, name not in after)

@@ -12,10 +12,9 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Final
 
-from dulwich.objects import ObjectID, ShaFile
+from dulwich.pack import UnpackedObject
 
-from fatektool.errors import DataError
-from fatektool.history.writing import TEMPORARY
+from fatektool.history.loose import TEMPORARY, read_loose
 from fatektool.program.files import sync_folder
 
 if TYPE_CHECKING:
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
     from fatektool.history.repository import Repository
 
 MANY: Final = 1000
+_SAMPLE: Final = 16
 _REST: Final = re.compile(r"[0-9a-f]{38}")
 _NUMBERS: Final = {"commit": 1, "tree": 2, "blob": 3, "tag": 4}
 _FOLDERS: Final = [f"{number:02x}" for number in range(256)]
@@ -31,9 +31,9 @@ _OURS: Final = ("tmp*.pack", "*.idx.lock")  # dulwich's unfinished packs; git's 
 
 
 def is_due(repository: Repository) -> bool:
-    """True if there are about ``MANY`` loose objects: one folder in 256 tells, as git itself guesses it."""
-    folder = repository.folder / "objects" / "17"
-    return folder.is_dir() and sum(1 for _ in folder.iterdir()) * 256 >= MANY
+    """True if there are about ``MANY`` loose objects: one folder in 16 tells, within a third of it."""
+    folders = (repository.folder / "objects" / name for name in _FOLDERS[::_SAMPLE])
+    return sum(1 for folder in folders if folder.is_dir() for _ in folder.iterdir()) * _SAMPLE >= MANY
 
 
 def pack_loose(repository: Repository) -> int:
@@ -48,29 +48,34 @@ def pack_loose(repository: Repository) -> int:
         DataError: the disk is full, or dulwich cannot; nothing is lost.
     """
     objects = repository.folder / "objects"
-    found: list[tuple[ShaFile, str | None]] = []
-    places: list[Path] = []
     with repository.door("the loose objects"):
         _sweep(objects)
-        for place in _loose(objects):
-            sha = place.parent.name + place.name
-            try:
-                kind, data = repository.any_object(sha)
-            except DataError:
-                continue
-            found.append((ShaFile.from_raw_string(_NUMBERS[kind], data, ObjectID(sha.encode())), None))
-            places.append(place)
-        if not found:
+        places = [place for place in _loose(objects) if _read(repository, place) is not None]
+        if not places:
             return 0
         store = repository.git.object_store
         store.fsync_object_files = True
-        store.add_objects(found)
+        # Each is read again when its turn comes: a thousand at once would be some 40 MB.
+        store.add_pack_data(len(places), (_unpacked(repository, place) for place in places))
         for path in (objects / "pack").glob("pack-*"):
             path.chmod(path.stat().st_mode & 0o440)
         sync_folder(objects / "pack")
         for place in places:
             place.unlink(missing_ok=True)
-    return len(found)
+    return len(places)
+
+
+def _read(repository: Repository, place: Path) -> tuple[str, bytes] | None:
+    return read_loose(repository.folder, place.parent.name + place.name)
+
+
+def _unpacked(repository: Repository, place: Path) -> UnpackedObject:
+    found = _read(repository, place)
+    if found is None:
+        raise repository.damaged(f"{place.name} was whole and is not any more")
+    kind, data = found
+    sha = bytes.fromhex(place.parent.name + place.name)
+    return UnpackedObject(_NUMBERS[kind], decomp_chunks=[data], sha=sha)
 
 
 def _loose(objects: Path) -> list[Path]:

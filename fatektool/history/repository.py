@@ -11,20 +11,20 @@ would cut the whole history off.
 
 from __future__ import annotations
 
-import hashlib
 import re
 from contextlib import contextmanager
 from dataclasses import dataclass
 from traceback import clear_frames
 from typing import TYPE_CHECKING, Final
 
-from dulwich.objects import Commit as GitCommit
-from dulwich.objects import ObjectID, Tree
+from dulwich.objects import ObjectID
 from dulwich.refs import Ref
 from dulwich.repo import Repo
 
 from fatektool.errors import DataError, FatektoolError, UsageError
-from fatektool.history.names import name_of
+from fatektool.history.commits import Commit, parse_commit
+from fatektool.history.loose import hash_of, read_loose
+from fatektool.history.trees import entries, files
 from fatektool.program.files import file_error
 
 if TYPE_CHECKING:
@@ -35,33 +35,19 @@ if TYPE_CHECKING:
 _KINDS: Final = {1: "commit", 2: "tree", 3: "blob", 4: "tag"}
 _SHA: Final = re.compile(rb"[0-9a-f]{40}")
 _BRANCH: Final = re.compile(rb"ref: (refs/heads/[^\0\s]+)\s*")
-_PLAIN_FILES: Final = {0o100644, 0o100755, 0o100664}
 
 
 @dataclass(frozen=True, slots=True)
-class Commit:
-    """One change of the history.
+class Newest:
+    """What a history holds now.
 
     Attributes:
-        revision: its hash, 40 hex digits.
-        tree: hash of its tree.
-        parents: hashes of those before it, the first the one it was made from.
-        time: when it was recorded, seconds since 1970.
-        author: who it was made for: ``press-3 <station-1@host>``.
-        message: subject, empty line, body; characters that no terminal should get are replaced.
+        tip: the newest commit's hash; None before the first.
+        tree: the bytes of its tree: every PLC's file.
     """
 
-    revision: str
-    tree: str
-    parents: tuple[str, ...]
-    time: int
-    author: str
-    message: str
-
-    @property
-    def subject(self) -> str:
-        """The message's first line."""
-        return self.message.partition("\n")[0]
+    tip: str | None
+    tree: bytes
 
 
 class Repository:
@@ -77,6 +63,7 @@ class Repository:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
+        self._newest: Newest | None = None
         if not folder.is_dir():
             raise UsageError(
                 f"there is no history {folder}",
@@ -105,6 +92,10 @@ class Repository:
         return self
 
     def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Let its files go."""
         self.git.close()
 
     def _require_format(self) -> None:
@@ -201,14 +192,16 @@ class Repository:
         Raises:
             DataError: it is not there, or damaged.
         """
+        loose = read_loose(self.folder, sha)
+        if loose is not None:
+            return loose
         with self.door(f"object {sha}"):
             try:
                 number, data = self.git.object_store.get_raw(ObjectID(sha.encode()))
             except KeyError:
                 raise self.damaged(f"object {sha} is missing") from None
             kind = _KINDS[number]
-        header = f"{kind} {len(data)}\0".encode()
-        if hashlib.sha1(header + data, usedforsecurity=False).hexdigest() != sha:
+        if hash_of(kind, data) != sha:
             raise self.damaged(f"{kind} {sha} is damaged: its bytes have another hash")
         return kind, data
 
@@ -220,27 +213,25 @@ class Repository:
         """
         data = self.read(sha, "commit")
         with self.door(f"commit {sha}"):
-            found = GitCommit.from_string(data)
-            return Commit(
-                sha,
-                found.tree.decode(),
-                tuple(parent.decode() for parent in found.parents),
-                int(found.commit_time),
-                printable(found.author.decode(errors="replace")),
-                printable(found.message.decode(errors="replace")),
-            )
+            return parse_commit(sha, data)
 
-    def tree(self, sha: str) -> Tree:
-        """A tree, as dulwich has it.
+    def tree(self, sha: str) -> bytes:
+        """A tree's bytes: see ``trees``.
 
         Raises:
-            DataError: it does not hold.
+            DataError: it is not there, of another kind, or damaged.
         """
-        data = self.read(sha, "tree")
+        return self.read(sha, "tree")
+
+    def entries(self, sha: str) -> list[bytes]:
+        """A tree's entries, as they stand in it: see ``trees``.
+
+        Raises:
+            DataError: the tree does not hold.
+        """
+        data = self.tree(sha)
         with self.door(f"tree {sha}"):
-            tree = Tree.from_string(data)
-            tree.items()  # read now, while the door stands open
-            return tree
+            return entries(data)
 
     def files(self, tree: str) -> dict[str, str]:
         """The PLCs' files in a tree: name and blob. What else somebody put there is left out.
@@ -248,10 +239,22 @@ class Repository:
         Raises:
             DataError: the tree does not hold.
         """
-        entries = ((name_of(path), mode, sha) for path, mode, sha in self.tree(tree).items())
-        return {
-            name: sha.decode() for name, mode, sha in entries if name is not None and mode in _PLAIN_FILES
-        }
+        return files(self.entries(tree))
+
+    def newest(self) -> Newest:
+        """What the newest commit holds; read once as long as the branch names that commit.
+
+        Raises:
+            DataError: the branch, its commit or its tree does not hold.
+        """
+        tip = self.tip()
+        if self._newest is None or self._newest.tip != tip:
+            self._newest = Newest(tip, b"" if tip is None else self.tree(self.commit(tip).tree))
+        return self._newest
+
+    def is_now(self, newest: Newest) -> None:
+        """Take for the newest what has just been written, so that it need not be read."""
+        self._newest = newest
 
     def chain(self, start: str | None) -> Iterator[Commit]:
         """A commit and those it was made from, newest first; of a merge, the side it was made on.
@@ -263,11 +266,6 @@ class Repository:
             found = self.commit(start)
             yield found
             start = found.parents[0] if found.parents else None
-
-
-def printable(text: str) -> str:
-    """The text without what could steer a terminal: other characters stand as ``?``, lines stay lines."""
-    return "".join(char if char.isprintable() or char == "\n" else "?" for char in text)
 
 
 def _let_go(error: BaseException | None) -> None:

@@ -16,11 +16,13 @@ from itertools import islice
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import UsageError
+from fatektool.history.trees import file_in
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from fatektool.history.repository import Commit, Repository
+    from fatektool.history.commits import Commit
+    from fatektool.history.repository import Repository
 
 SHORT: Final = 10
 _BACK: Final = re.compile(r"HEAD(?:~(\d{1,6}))?", re.ASCII)
@@ -30,24 +32,25 @@ _DAY: Final = re.compile(r"\d{4}-\d\d-\d\d", re.ASCII)
 _TIME: Final = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d(:\d\d)?Z", re.ASCII)
 
 
-def changes_of(name: str, repository: Repository, start: str | None) -> Iterator[Commit]:
-    """The commits in which one PLC's file changed, newest first.
+def changes_of(name: str, repository: Repository, start: str | None) -> Iterator[tuple[Commit, str | None]]:
+    """The commits in which one PLC's file changed, newest first, each with the blob that it is then.
+
+    The blob is None where the file was taken out.
 
     Raises:
         DataError: the history does not hold.
     """
     after: Commit | None = None
     seen: str | None = None
-    trees: dict[str, str | None] = {}
     for commit in repository.chain(start):
-        if commit.tree not in trees:
-            trees = {commit.tree: repository.files(commit.tree).get(name)}
-        blob = trees[commit.tree]
-        if after is not None and blob != seen:
-            yield after
-        after, seen = commit, blob
+        if after is None or commit.tree != after.tree:
+            blob = file_in(repository.tree(commit.tree), name)
+            if after is not None and blob != seen:
+                yield after, seen
+            seen = blob
+        after = commit
     if after is not None and seen is not None:
-        yield after
+        yield after, seen
 
 
 def resolve(repository: Repository, name: str, revision: str) -> Commit:
@@ -67,7 +70,8 @@ def resolve(repository: Repository, name: str, revision: str) -> Commit:
     if back := _BACK.fullmatch(revision):
         found = next(islice(chain, int(back[1] or 0), None), None)
     elif back := _CHANGES_BACK.fullmatch(revision):
-        found = next(islice(changes_of(name, repository, repository.tip()), int(back[1]), None), None)
+        changes = changes_of(name, repository, repository.tip())
+        found = next((commit for commit, _ in islice(changes, int(back[1]), None)), None)
     elif _DAY.fullmatch(revision) or _TIME.fullmatch(revision):
         last = _last_second(revision)
         found = next((commit for commit in chain if commit.time <= last), None)

@@ -2,7 +2,7 @@
 
 ::
 
-    1. blob, tree, commit   each to objects/xx/tmp_obj_…, fsync, rename, fsync of the folder
+    1. blob, tree, commit   each to objects/xx/tmp_obj_…, fsync, rename, fsync of the folder (``loose``)
     2. fatektool.ref        the commit's hash, fsync
     3. main.lock            a hard link to it: git's own lock, so that no 'git gc' or 'git push' is in between
     4. the branch           is it still what the commit was made from? Then rename of main.lock, fsync
@@ -20,7 +20,6 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
-import secrets
 import time
 from typing import TYPE_CHECKING, Final
 
@@ -33,11 +32,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from dulwich.objects import ShaFile
-
 LOCK: Final = "fatektool.lock"
 STAGE: Final = "fatektool.ref"
-TEMPORARY: Final = "tmp_obj_fatektool-"
 _HEAD: Final = b"ref: refs/heads/main\n"
 _CONFIG: Final = b"[core]\n\trepositoryformatversion = 0\n\tfilemode = true\n\tbare = true\n"
 _FOLDERS: Final = ("objects", "objects/info", "objects/pack", "refs", "refs/heads", "refs/tags")
@@ -108,31 +104,6 @@ def _make(folder: Path) -> None:
         write_synced(temporary, data)
         temporary.replace(folder / name)
         sync_folder(folder)
-
-
-def write_object(folder: Path, found: ShaFile) -> None:
-    """Put an object into the repository; one that is there anew, as it may be damaged or about to go.
-
-    Args:
-        folder: the repository.
-        found: the object.
-
-    Raises:
-        OSError: the disk is full or broken.
-    """
-    sha = found.id.decode()
-    place = folder / "objects" / sha[:2]
-    if not place.is_dir():
-        place.mkdir(_FOLDER_MODE, exist_ok=True)
-        sync_folder(place.parent)
-    temporary = place / f"{TEMPORARY}{secrets.token_hex(6)}"
-    try:
-        write_synced(temporary, found.as_legacy_object())
-        temporary.replace(place / sha[2:])
-        sync_folder(place)
-    finally:
-        with contextlib.suppress(OSError):
-            temporary.unlink(missing_ok=True)
 
 
 def move_branch(

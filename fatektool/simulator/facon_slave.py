@@ -31,6 +31,7 @@ and nothing is written unless all of it is right (FACON paper, sections 2 to 4).
 from __future__ import annotations
 
 from functools import lru_cache
+from struct import pack
 from typing import TYPE_CHECKING
 
 from fatektool.simulator import facon_frame
@@ -185,9 +186,8 @@ def _registers(fields: Fields) -> tuple[int, Kind, int]:
 def _read_registers(plc: SimulatedPlc, fields: Fields) -> bytes:
     count, kind, address = _registers(fields)
     fields.end()
-    width = VALUE_CHARACTERS[kind.bits] // 2
     values = plc.read_words(kind.symbol, address, count)
-    return _hex(b"".join([value.to_bytes(width, "big") for value in values]))
+    return _hex(pack(f">{count}{'I' if kind.bits == 32 else 'H'}", *values))
 
 
 def _write_registers(plc: SimulatedPlc, fields: Fields) -> bytes:

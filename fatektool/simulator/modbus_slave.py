@@ -21,6 +21,7 @@ answered by none. R4047 chooses the protocol of a real PLC's ports; here it is t
 
 from __future__ import annotations
 
+from struct import pack
 from typing import TYPE_CHECKING
 
 from fatektool.simulator.modbus_map import LONG_COUNTER, Piece, pieces
@@ -125,7 +126,7 @@ def _read_bits(plc: SimulatedPlc, function: int, data: bytes) -> bytes:
 def _read_words(plc: SimulatedPlc, function: int, data: bytes) -> bytes:
     address, count = _span(data, MAX_READ_WORDS)
     values = [value for piece in pieces(plc, function, address, count) for value in _words(plc, piece)]
-    return bytes((2 * count,)) + b"".join(value.to_bytes(2, "big") for value in values)
+    return pack(f">B{count}H", 2 * count, *values)
 
 
 def _words(plc: SimulatedPlc, piece: Piece) -> list[int]:

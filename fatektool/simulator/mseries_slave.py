@@ -31,6 +31,7 @@ paper, section 2).
 
 from __future__ import annotations
 
+from struct import pack
 from typing import TYPE_CHECKING
 
 from fatektool.simulator import mseries_frame
@@ -181,8 +182,7 @@ def _registers(fields: Fields) -> tuple[int, Kind, int]:
 def _read_registers(plc: SimulatedPlc, fields: Fields) -> bytes:
     count, kind, address = _registers(fields)
     fields.end()
-    values = plc.read_words(kind.symbol, address, count)
-    return b"".join(value.to_bytes(value_bytes(kind), "big") for value in values)
+    return pack(f">{count}{'I' if kind.bits == 32 else 'H'}", *plc.read_words(kind.symbol, address, count))
 
 
 def _write_registers(plc: SimulatedPlc, fields: Fields) -> bytes:

@@ -259,17 +259,17 @@ def test_a_push_into_it_in_between(book: Book) -> None:
 
 def test_many_files_become_one(book: Book) -> None:
     book.record("press", ONE, TWO)
-    seventeen = book.folder / "objects" / "17"
+    thirty = book.folder / "objects" / "30"
     with writing(book.folder, 0.0), Repository(book.folder) as repository:
         assert not is_due(repository)
-        seventeen.mkdir(exist_ok=True)
-        for number in range(-(-MANY // 256)):
-            (seventeen / f"tmp_obj_fatektool-{number}").write_bytes(b"left by a killed run")
+        thirty.mkdir(exist_ok=True)
+        for number in range(-(-MANY // 16)):
+            (thirty / f"tmp_obj_fatektool-{number}").write_bytes(b"left by a killed run")
         assert is_due(repository)
     book.record("press", THREE)
     assert "count: 0\n" in book.git("count-objects", "-v")
     assert "in-pack: 9\n" in book.git("count-objects", "-v")
-    assert not list(seventeen.iterdir())
+    assert not list(thirty.iterdir())
     assert [book.history.show("press", f"~{n}").backup for n in range(3)] == [THREE, TWO, ONE]
     assert book.record("press", ONE)[0].revision
     book.fsck()

@@ -1,0 +1,163 @@
+"""Keeping a backup, if its program is another than the one that the history holds for this PLC.
+
+::
+
+    look     the newest commit, its tree, this PLC's blob        most PLCs, most nights: no more than that
+    write    blob, tree, commit, then the branch (``writing``)   1 of 100, under the lock, after another look
+
+A look takes no lock and writes nothing, so that a night's round waits for nobody but where something changed.
+A backup before that cannot be read is told, and no reason to lose today's.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
+
+from dulwich.objects import Commit, ObjectID
+
+from fatektool.errors import DataError, UsageError
+from fatektool.history import messages
+from fatektool.history.loose import hash_of, write_loose
+from fatektool.history.repository import Newest
+from fatektool.history.trees import entries, file_in, files, with_file
+from fatektool.history.writing import move_branch
+from fatektool.program.archive import Backup
+from fatektool.program.compare import Comparison, compare
+
+if TYPE_CHECKING:
+    from fatektool.history.repository import Repository
+
+
+@dataclass(frozen=True, slots=True)
+class Recorded:
+    """What became of a backup.
+
+    Attributes:
+        name: the PLC.
+        revision: the new commit, 40 hex digits; None if the program is the one that is there already.
+        subject: in words: ``press-3: 4 words in 2 pages changed``.
+        changes: the old program against the new one; None for a first backup.
+        warnings: what the user should know: a damaged file before this one.
+    """
+
+    name: str
+    revision: str | None
+    subject: str
+    changes: Comparison | None
+    warnings: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """A PLC's backup beside the one that the history holds.
+
+    Attributes:
+        newest: what was looked at.
+        old: the backup there; None if there is none, or none that can be read.
+        changes: the old program against the new one; None without an old one.
+        warnings: why the old one cannot be read.
+    """
+
+    newest: Newest
+    old: Backup | None = None
+    changes: Comparison | None = None
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def same(self) -> bool:
+        """True if the history holds this very program."""
+        return self.changes is not None and self.changes.same
+
+
+def look(repository: Repository, name: str, backup: Backup) -> Look:
+    """Compare a backup with the newest one.
+
+    Raises:
+        DataError: the newest commit or its tree does not hold.
+    """
+    newest = repository.newest()
+    blob = file_in(newest.tree, name)
+    if blob is None:
+        return Look(newest)
+    try:
+        old = Backup.parse(repository.read(blob, "blob"), name)
+    except DataError as error:  # no reason to lose today's backup too
+        return Look(newest, warnings=(f"the backup before could not be read: {error}",))
+    return Look(newest, old, compare(old.program, backup.program))
+
+
+def unchanged(name: str, found: Look) -> Recorded:
+    """What is said of a program that the history holds already."""
+    return Recorded(name, None, f"{name}: unchanged", found.changes)
+
+
+def write(
+    repository: Repository, name: str, backup: Backup, seen: Look | None, *, now: int, wait_s: float
+) -> Recorded:
+    """Record a backup that is another; the caller holds the right to write.
+
+    Args:
+        repository: the history.
+        name: the PLC.
+        backup: its program.
+        seen: a look without that right, which holds if nobody has written since.
+        now: seconds since 1970.
+        wait_s: how long to wait for another git program.
+
+    Raises:
+        UsageError: another PLC's name is the same but for case.
+        DataError: the newest commit or its tree does not hold.
+        PortBusy: another git program holds the branch.
+        OSError: the disk is full or broken.
+    """
+    while True:  # once more if somebody pushed into it meanwhile
+        tip = repository.tip()
+        found = seen if seen is not None and seen.newest.tip == tip else look(repository, name, backup)
+        if found.same:
+            return unchanged(name, found)
+        subject = messages.subject(name, found.changes, damaged=bool(found.warnings))
+        blob, tree = _new_file(repository, found.newest.tree, name, backup)
+        folder = repository.folder
+        write_loose(folder, "blob", blob)
+        commit = _commit(write_loose(folder, "tree", tree), found.newest.tip, name, backup, now)
+        commit.message = messages.message(subject, found.changes, found.old, backup)
+        new = write_loose(folder, "commit", commit.as_raw_string())
+        still = partial(_is_tip, repository, found.newest.tip)
+        if move_branch(repository.folder, repository.branch(), new, still, wait_s=wait_s):
+            repository.is_now(Newest(new, tree))
+            return Recorded(name, new, subject, found.changes, found.warnings)
+
+
+def _is_tip(repository: Repository, tip: str | None) -> bool:
+    return repository.tip() == tip
+
+
+def _new_file(repository: Repository, old: bytes, name: str, backup: Backup) -> tuple[bytes, bytes]:
+    """The blob, and the tree with it."""
+    if file_in(old, name) is None:
+        _require_own_file(repository, old, name)
+    blob = backup.to_bytes()
+    with repository.door("the newest tree"):
+        return blob, with_file(old, name, hash_of("blob", blob))
+
+
+def _require_own_file(repository: Repository, tree: bytes, name: str) -> None:
+    others = files(entries(tree))
+    twin = next((other for other in others if other.casefold() == name.casefold()), None)
+    if twin is not None:
+        raise UsageError(
+            f"{name!r} and {twin!r} of the history {repository.folder} would share a file",
+            hint="choose another name",
+        )
+
+
+def _commit(tree: str, parent: str | None, name: str, backup: Backup, now: int) -> Commit:
+    commit = Commit()
+    commit.tree = ObjectID(tree.encode())
+    commit.parents = [] if parent is None else [ObjectID(parent.encode())]
+    commit.author, commit.author_time = messages.author(name, backup), messages.read_at(backup, now)
+    commit.committer, commit.commit_time = messages.committer(), now
+    commit.author_timezone = commit.commit_timezone = 0
+    return commit
