@@ -13,7 +13,6 @@ import sys
 import time
 from typing import TYPE_CHECKING
 
-
 if TYPE_CHECKING:
     from collections.abc import Callable
 

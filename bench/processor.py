@@ -1,4 +1,4 @@
-"""What does an exchange cost the processor? Instructions and microseconds, beside the least that does the same.
+"""What does an exchange cost the processor? Instructions and microseconds, beside the least that does it.
 
 ::
 
@@ -7,9 +7,9 @@
     exchange    both, and the line between: over TCP to a simulator in another process
 
 The bare side is a straight line of Python that gives the same values from the same bytes, and proves the
-checksum, but knows no station, no error code, no late answer, no noise and no half frame. Instructions are the
-process's own, without the kernel's, counted by valgrind (cachegrind), where there is one: the difference between
-a long and a short run, so that starting counts for nothing. Microseconds are the best of some runs.
+checksum, but knows no station, no error code, no late answer, no noise and no half frame. Instructions are
+the process's own, without the kernel's, counted by valgrind (cachegrind), where there is one: the difference
+between a long and a short run, so that starting counts for nothing. Microseconds are the best of some runs.
 
 Usage: python bench/processor.py
 """

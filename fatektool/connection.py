@@ -14,24 +14,12 @@ from fatektool.client import Plc
 from fatektool.errors import PlcError, PlcRefused, UsageError
 from fatektool.link import Link
 from fatektool.protocol.codec import require_commands, require_station
-from fatektool.protocol.commands import ReadRegisters
-from fatektool.protocol.elements import Element
-from fatektool.protocol.facon import FACON
-from fatektool.protocol.modbus import ASCII, RTU, TCP, ModbusCodec
-from fatektool.protocol.modbus_map import (
-    FIRST_REGISTER,
-    REGISTER_COUNT,
-    STANDARD,
-    STANDARD_NAME,
-    map_of_registers,
-)
-from fatektool.protocol.mseries import MSERIES
+from fatektool.protocol.codecs import Codecs
 from fatektool.transport.base import LineSettings, no_note
-from fatektool.transport.limit import LimitedTransport
 from fatektool.transport.target import Target, TargetKind
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Mapping
     from pathlib import Path
 
     from fatektool.protocol.codec import Codec
@@ -41,7 +29,7 @@ if TYPE_CHECKING:
     from fatektool.transport.limit import Limit
     from fatektool.transport.lock import PortLock
 
-CODECS: dict[str, Codec] = {codec.name: codec for codec in (FACON, MSERIES, RTU, ASCII, TCP)}
+CODECS: Mapping[str, Codec] = Codecs()
 
 
 def _to_nobody(_: object) -> None:
@@ -54,10 +42,9 @@ def codec_named(protocol: str) -> Codec:
     Raises:
         UsageError: there is none.
     """
-    codec = CODECS.get(protocol)
-    if codec is None:
+    if protocol not in CODECS:
         raise UsageError(f"protocol {protocol!r}: expected one of {', '.join(CODECS)}")
-    return codec
+    return CODECS[protocol]
 
 
 def usual_format(protocol: str) -> str:
@@ -65,15 +52,18 @@ def usual_format(protocol: str) -> str:
     return f"{codec_named(protocol).data_bits or 8}E1"
 
 
-def mapped(codec: Codec, modbus_map: ModbusMap) -> Codec:
-    """The same protocol over another Modbus map.
+def mapped(codec: Codec, modbus_map: ModbusMap | None) -> Codec:
+    """The same protocol over another Modbus map; None for the standard one.
 
     Raises:
         UsageError: it has none.
     """
+    from fatektool.protocol.modbus import ModbusCodec
+    from fatektool.protocol.modbus_map import STANDARD
+
     if not isinstance(codec, ModbusCodec):
         raise UsageError(f"a Modbus map is for a Modbus protocol, not for {codec.name}")
-    return codec.mapped(modbus_map)
+    return codec.mapped(STANDARD if modbus_map is None else modbus_map)
 
 
 def map_in_plc(link: Link) -> ModbusMap:
@@ -86,6 +76,10 @@ def map_in_plc(link: Link) -> ModbusMap:
         PlcError: they cannot be read, or another map is in force.
         LineError: no answer.
     """
+    from fatektool.protocol.commands import ReadRegisters
+    from fatektool.protocol.elements import Element
+    from fatektool.protocol.modbus_map import FIRST_REGISTER, REGISTER_COUNT, STANDARD_NAME, map_of_registers
+
     first = Element("R", FIRST_REGISTER)
     hint = (
         "'fatektool snapshot R3968-R3980 -o map.json' on a port that speaks FACON, then --modbus-map map.json"
@@ -122,6 +116,7 @@ def connect(
     limit: Limit | None = None,
     read_only: bool = False,
     modbus_map: ModbusMap | Literal["custom"] | None = None,
+    low_latency: bool = True,
     note: Callable[[str], None] = no_note,
 ) -> Plc:
     """Open the line to a PLC. Nothing is sent yet, but for ``modbus_map="custom"``.
@@ -144,6 +139,7 @@ def connect(
         read_only: refuse every request that writes, before a byte is sent.
         modbus_map: which elements have which Modbus references; by default the standard map. ``custom`` reads
             the PLC's own.
+        low_latency: ask the driver of a serial port to hand on at once what it receives, on Linux.
         note: is told what a curious user may want to know.
 
     Raises:
@@ -154,7 +150,7 @@ def connect(
     require_commands(codec, *needs)
     require_station(codec, station)
     if modbus_map is not None:
-        codec = mapped(codec, STANDARD if modbus_map == "custom" else modbus_map)
+        codec = mapped(codec, None if modbus_map == "custom" else modbus_map)
     if not 0 < timeout_s < inf or retries < 0:
         raise UsageError(f"expected a timeout above 0 and retries from 0, got {timeout_s:g} and {retries}")
     line = LineSettings(baud, usual_format(protocol) if format is None else format)
@@ -169,10 +165,13 @@ def connect(
             station=station,
             lock_wait_s=lock_wait_s,
             trace=trace,
+            low_latency=low_latency,
             note=note,
             on_lock=locks.append,
         )
         if limit is not None:
+            from fatektool.transport.limit import LimitedTransport
+
             transport = LimitedTransport(transport, limit)
         link = Link(
             transport,
@@ -219,6 +218,7 @@ def open_line(
     station: int = 1,
     lock_wait_s: float = 10.0,
     trace: Path | None = None,
+    low_latency: bool = True,
     note: Callable[[str], None] = no_note,
     on_lock: Callable[[PortLock], object] = _to_nobody,
 ) -> Transport:
@@ -232,6 +232,7 @@ def open_line(
         station: of a simulated PLC.
         lock_wait_s: as for ``connect``.
         trace: as for ``connect``.
+        low_latency: as for ``connect``.
         note: as for ``connect``.
         on_lock: is given the lock of a real line.
 
@@ -257,6 +258,7 @@ def open_line(
         line=line,
         stack=stack,
         lock_wait_s=lock_wait_s,
+        low_latency=low_latency,
         note=note,
         on_lock=on_lock,
     )
@@ -275,13 +277,22 @@ def _open(
     line: LineSettings,
     stack: ExitStack,
     lock_wait_s: float,
+    low_latency: bool,
     note: Callable[[str], None],
     on_lock: Callable[[PortLock], object],
 ) -> Transport:
     if where.kind is not TargetKind.SIM:
         from fatektool.transport.open import open_transport
 
-        return open_transport(where, line, stack, lock_wait_s=lock_wait_s, note=note, on_lock=on_lock)
+        return open_transport(
+            where,
+            line,
+            stack,
+            lock_wait_s=lock_wait_s,
+            low_latency=low_latency,
+            note=note,
+            on_lock=on_lock,
+        )
     from os.path import realpath
     from pathlib import Path
 

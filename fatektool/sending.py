@@ -35,8 +35,6 @@ class Sender:
 
     def __init__(self, link: Link) -> None:
         self._link = link
-        self._codec = link.codec
-        self._station = link.station
         self._number = 0
         # A gateway keeps the silence before frames itself.
         quiet = link.codec.quiet_chars if link.transport.line is not None else 0.0
@@ -49,7 +47,7 @@ class Sender:
         Raises:
             UsageError: it cannot be said in this protocol.
         """
-        codec, station = self._codec, self._station
+        codec, station = self._link.codec, self._link.station
         number = self._number = (self._number + 1) % codec.numbers
         return Sent(codec.encode(station, request, number), station, codec.code(request), number)
 

@@ -111,19 +111,22 @@ def _write_by_write(
 
 
 def _receive(link: Link, request: Request[A], sent: int) -> Frame | bytes | None:
-    """Bytes of the answer's length, if they came in one piece; else a frame; else None, and a doubt."""
+    """Bytes of the answer's length, not looked at; a frame, if one came before; else None, and a doubt."""
     hearing, transport = link.hearing, link.transport
     size = link.codec.answer_bytes(request)
     rest = wait_s = (sent + size) * link.byte_time_s + link.timeout_s * hearing.patience
     began = transport.clock()
+    whole = b""
     while rest > 0:
         try:
             data = transport.read(_READ_BYTES, rest)
         except TransportTimeout:
             data = b""
         link.counters.bytes_heard += len(data)
-        if len(data) == size and rest == wait_s:
-            return data
+        whole += data
+        if len(whole) == size:  # to send what comes next is more urgent than to look at it
+            hearing.decoder.clear()
+            return whole
         hearing.decoder.feed(data)
         try:
             frame = hearing.decoder.next_frame()

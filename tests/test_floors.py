@@ -1,10 +1,8 @@
-"""The house keeps its floors: imports point down, nothing below the command line prints, a start is cheap."""
+"""The house keeps its floors: imports point down, and nothing below the command line prints."""
 
 from __future__ import annotations
 
 import ast
-import subprocess
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -12,8 +10,6 @@ import pytest
 
 import fatektool
 from fatektool.cli.app import ENTRIES
-from fatektool.simulator.build import build_simulation
-from fatektool.simulator.servers import Server, running
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -133,53 +129,6 @@ def test_the_rooms_below_the_lines_do_no_input_or_output() -> None:
             assert found.name.partition(".")[0] not in forbidden, f"{found.by} imports {found.name}"
         if found.name.partition(".")[0] in {"os", "pathlib", "tempfile"} and found.room == "program":
             assert found.by in {"fatektool.program.files", "fatektool.program.archive"}, found
-
-
-# --- what a start loads -----------------------------------------------------------------------------------
-
-LOADED = "import sys; {action}; print(*sys.modules, file=sys.stderr)"
-
-
-def loaded(action: str) -> set[str]:
-    """The modules that are loaded, by their first names, when this was done in a fresh process."""
-    program = LOADED.format(action=action)
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    return {module.partition(".")[0] for module in done.stderr.split()}
-
-
-def command(*words: str) -> str:
-    return f"from fatektool.cli import run; code = run({list(words)}); assert code == 0, code"
-
-
-NEVER = {"rich", "asyncio", "pymodbus", "dulwich", "git", "tomllib", "serial", "jsonschema"}
-
-
-def test_importing_the_library_loads_no_other() -> None:
-    assert not loaded("import fatektool; fatektool.__version__") & {"click", "rich", "serial"}
-    every = loaded("import fatektool; [getattr(fatektool, name) for name in fatektool.__all__]")
-    assert not every & {"click", *NEVER}
-
-
-def test_version_loads_next_to_nothing() -> None:
-    found = loaded(command("--version"))
-    assert "click" in found
-    assert not found & NEVER
-
-
-def test_status_over_tcp_loads_what_it_needs() -> None:
-    server = Server(build_simulation(ladder_words=400))
-    door = server.open_tcp()
-    with running(server):
-        assert not loaded(command("status", "-p", door.address)) & NEVER
-
-
-def test_a_command_does_not_load_the_simulator_unless_it_is_one() -> None:
-    server = Server(build_simulation(ladder_words=400))
-    door = server.open_tcp()
-    program = LOADED.format(action=command("status", "-p", door.address))
-    with running(server):
-        done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    assert "fatektool.simulator" not in done.stderr.split()
 
 
 @pytest.mark.parametrize("name", ENTRIES)

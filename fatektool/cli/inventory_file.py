@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from fatektool.cli.file_path import FilePath
 from fatektool.errors import FatektoolError
 from fatektool.inventory.find import FILE_NAME, find_inventory, load_inventory, may_be_name, no_inventory
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
     from click.shell_completion import CompletionItem
 
@@ -22,7 +23,7 @@ F = TypeVar("F", bound="Callable[..., Any]")
 
 inventory_option = click.option(
     "--inventory",
-    type=click.Path(path_type=Path),
+    type=FilePath(),
     envvar="FATEKTOOL_INVENTORY",
     metavar="FILE.toml",
     help=f"Where names of PLCs stand; by default ./{FILE_NAME}, else that in your configuration folder.  "
@@ -32,6 +33,8 @@ inventory_option = click.option(
 
 def inventory_path(named: Path | None) -> Path | None:
     """The inventory's file: as named, else in the present folder, else the user's own; None for none."""
+    from pathlib import Path
+
     return find_inventory(named, (Path(FILE_NAME), Path(click.get_app_dir("fatektool")) / FILE_NAME))
 
 
@@ -71,6 +74,8 @@ def plc_named(word: str, named: Path | None) -> PlcEntry | None:
 
 def complete_target(context: click.Context, _: click.Parameter, incomplete: str) -> list[CompletionItem]:
     """The names that begin so; else files, as a port is one on most systems."""
+    from pathlib import Path
+
     from click.shell_completion import CompletionItem
 
     named = context.params.get("inventory") or os.environ.get("FATEKTOOL_INVENTORY")

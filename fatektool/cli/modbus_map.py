@@ -4,19 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import wraps
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import click
 
 from fatektool.errors import UsageError
-from fatektool.protocol.modbus_map import (
-    FIRST_REGISTER,
-    REGISTER_COUNT,
-    STANDARD,
-    map_of_registers,
-    parse_map,
-)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -55,7 +47,7 @@ def map_alone_option(function: F) -> F:
     @click.option("--modbus-map", metavar="standard|MAP|FILE", help=_FORMS)
     @wraps(function)
     def with_map(*args: Any, modbus_map: str | None, **rest: Any) -> Any:
-        chosen = STANDARD if modbus_map is None else read_map(modbus_map)
+        chosen = read_map("standard" if modbus_map is None else modbus_map)
         return function(*args, modbus_map=chosen, **rest)
 
     return with_map  # type: ignore[return-value]  # as above
@@ -68,6 +60,14 @@ def read_map(text: str) -> ModbusMap:
         UsageError: it is none, or no such file.
         DataError: the file is no snapshot, or does not hold the thirteen registers.
     """
+    from fatektool.protocol.modbus_map import (
+        FIRST_REGISTER,
+        REGISTER_COUNT,
+        STANDARD,
+        map_of_registers,
+        parse_map,
+    )
+
     if text == "standard":
         return STANDARD
     if "=" in text:
@@ -76,6 +76,8 @@ def read_map(text: str) -> ModbusMap:
         raise UsageError(
             "--modbus-map custom asks the PLC, and this command has none", hint="give the map, or a snapshot"
         )
+    from pathlib import Path
+
     from fatektool.jobs.snapshot import load_snapshot, raw_of
 
     held = {element: raw for element, raw in raw_of(load_snapshot(Path(text))).values() if raw is not None}

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import wraps
 from math import isnan
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import click
 from click.core import ParameterSource
 
+from fatektool.cli.file_path import FilePath
 from fatektool.cli.inventory_file import complete_target, inventory_option, plc_named
 from fatektool.cli.output import Voice
 from fatektool.errors import LineReadOnly, UsageError
@@ -18,6 +18,7 @@ from fatektool.errors import LineReadOnly, UsageError
 if TYPE_CHECKING:
     from collections.abc import Callable
     from contextlib import ExitStack
+    from pathlib import Path
 
     from fatektool.client import Plc
     from fatektool.inventory.entries import PlcEntry
@@ -67,7 +68,7 @@ class Several(click.ParamType):  # type: ignore[type-arg]  # a generic in the ne
 
 F = TypeVar("F", bound="Callable[..., Any]")
 
-PATH = click.Path(path_type=Path)
+PATH = FilePath()
 PROTOCOLS = ("facon", "mseries", "modbus-rtu", "modbus-ascii", "modbus-tcp")
 _IN_INVENTORY = {
     "station": "station",
@@ -95,6 +96,7 @@ class Connection:
     entry: PlcEntry | None = None
     read_only: bool = False
     modbus_map: ModbusMap | Literal["custom"] | None = None
+    low_latency: bool = True
 
     def open(
         self,
@@ -136,6 +138,7 @@ class Connection:
             limit=limit,
             read_only=self.read_only,
             modbus_map=self.modbus_map,
+            low_latency=self.low_latency,
             note=voice.detail,
         )
 
@@ -152,6 +155,7 @@ class Connection:
             station=self.station,
             lock_wait_s=self.lock_wait_s,
             trace=self.trace,
+            low_latency=self.low_latency,
             note=voice.detail,
         )
 
@@ -226,6 +230,12 @@ def connection_options_but_format(function: F) -> F:
         metavar="S",
         help="How long to wait for a port that another process uses.",
     )
+    @click.option(
+        "--low-latency/--no-low-latency",
+        default=True,
+        show_default=True,
+        help="Ask the driver of a serial port to hand on at once what it receives, on Linux.",
+    )
     @click.option("--trace", type=PATH, metavar="FILE", help="Record the wire: .pcap or .ndjson.")
     @click.option(
         "--read-only",
@@ -245,6 +255,7 @@ def connection_options_but_format(function: F) -> F:
         timeout: float,
         retries: int,
         lock_wait: float,
+        low_latency: bool,
         trace: Path | None,
         read_only: bool,
         inventory: Path | None,
@@ -258,7 +269,17 @@ def connection_options_but_format(function: F) -> F:
 
         form = usual_format(protocol) if line_format is None else line_format.upper()
         line = Connection(
-            port, station, protocol, baud, form, timeout, retries, lock_wait, trace, read_only=read_only
+            port,
+            station,
+            protocol,
+            baud,
+            form,
+            timeout,
+            retries,
+            lock_wait,
+            trace,
+            read_only=read_only,
+            low_latency=low_latency,
         )
         entry = plc_named(port, inventory)
         if entry is not None:
@@ -279,7 +300,13 @@ def _of_inventory(line: Connection, entry: PlcEntry, *, has_format: bool) -> Con
     }
     if has_format or given.get("protocol", own.protocol) != own.protocol:
         given["format"] = line.format  # that of the inventory is meant for the protocol there
-    return replace(own, trace=line.trace, read_only=line.read_only or own.read_only, **given)
+    return replace(
+        own,
+        trace=line.trace,
+        read_only=line.read_only or own.read_only,
+        low_latency=line.low_latency,
+        **given,
+    )
 
 
 def connection_of(entry: PlcEntry) -> Connection:

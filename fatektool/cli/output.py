@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import contextlib
-import json
-import re
 import sys
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
 from fatektool.errors import UsageError
-from fatektool.jobs.progress import Progress, no_progress
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -21,14 +18,19 @@ if TYPE_CHECKING:
 
     from rich.progress import TaskID
 
+    from fatektool.jobs.progress import Progress
 
-_OBEYED = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]")
-"""What a terminal obeys: control characters but for tab and new line, and those of direction."""
+
+_CONTROLS: Final = (*range(0x09), *range(0x0B, 0x20), *range(0x7F, 0xA0))
+_DIRECTIONS: Final = (0x61C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A))
+_OBEYED: Final = {code: ascii(chr(code))[1:-1] for code in (*_CONTROLS, *_DIRECTIONS)}
+"""What a terminal obeys, each with its code: control characters but for tab and new line, and those of
+direction."""
 
 
 def visible(text: str) -> str:
     """Text from a file, a PLC or a name: what a terminal would obey stands there as a code."""
-    return _OBEYED.sub(lambda found: ascii(found[0])[1:-1], text)
+    return text.translate(_OBEYED)
 
 
 def tell(text: str) -> None:
@@ -39,6 +41,8 @@ def tell(text: str) -> None:
 
 def print_json(document: dict[str, Any]) -> None:
     """Print one document on stdout."""
+    import json
+
     click.echo(json.dumps(document, indent=2, allow_nan=False))
 
 
@@ -141,6 +145,8 @@ class Bar:
     """
 
     def __init__(self, unit: str, *, shown: bool) -> None:
+        from fatektool.jobs.progress import no_progress
+
         self._unit = unit
         self._shown = shown
         self._tasks: dict[str, TaskID] = {}

@@ -195,11 +195,12 @@ class Edges:
         first, most = line.firsts[place], self._costs.most(line.symbol)
         limit = line.place_past(first + most, place)
         if limit == len(line):
-            request = self._costs.run(line.symbol, STEP) - 1
+            byte = self._costs.run(line.symbol, 2 * STEP) - self._costs.run(line.symbol, STEP)  # in ASCII 2
+            request = self._costs.run(line.symbol, STEP) - byte
             ends = {
                 end
                 for end in line.ends[bisect_right(line.ends, place) : -1]
-                if -(-(line.firsts[end] - line.lasts[end - 1] - 1) // STEP) > request
+                if byte * -(-(line.firsts[end] - line.lasts[end - 1] - 1) // STEP) > request
             }
             ends.add(limit)
         else:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 from dataclasses import dataclass
+from operator import ne
 from typing import TYPE_CHECKING
 
 from fatektool.program.image import PAGE_WORDS
@@ -29,10 +30,27 @@ class WordDifference:
 
 @dataclass(frozen=True, slots=True)
 class PageDifference:
-    """One page that differs. ``words`` is empty for a page that only one of the two programs has."""
+    """One page that differs.
+
+    Attributes:
+        page: its number.
+        a: the page in the first program, 128 bytes; None if it has no such page.
+        b: the same in the second.
+    """
 
     page: int
-    words: tuple[WordDifference, ...]
+    a: bytes | None
+    b: bytes | None
+
+    @property
+    def words(self) -> tuple[WordDifference, ...]:
+        """The words that differ; empty for a page that only one of the two programs has."""
+        return () if self.a is None or self.b is None else compare_pages(self.a, self.b)
+
+    @property
+    def word_count(self) -> int:
+        """How many they are, found without naming each: a restore counts before it asks, and a line waits."""
+        return 0 if self.a is None or self.b is None else sum(map(ne, _words(self.a), _words(self.b)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +80,7 @@ class Comparison:
     @property
     def word_count(self) -> int:
         """How many words differ, in the pages that both have."""
-        return sum(len(page.words) for page in self.pages)
+        return sum(page.word_count for page in self.pages)
 
 
 def compare(a: Program, b: Program) -> Comparison:
@@ -72,13 +90,15 @@ def compare(a: Program, b: Program) -> Comparison:
         ours = a.pages[number] if number < len(a.pages) else None
         theirs = b.pages[number] if number < len(b.pages) else None
         if ours != theirs:
-            words = () if ours is None or theirs is None else compare_pages(ours, theirs)
-            pages.append(PageDifference(number, words))
+            pages.append(PageDifference(number, ours, theirs))
     return Comparison(a.ladder_words, b.ladder_words, tuple(pages))
 
 
 def compare_pages(a: bytes, b: bytes) -> tuple[WordDifference, ...]:
     """The words in which two pages of 128 bytes differ."""
-    form = f">{PAGE_WORDS}H"
-    pairs = zip(struct.unpack(form, a), struct.unpack(form, b), strict=True)
+    pairs = zip(_words(a), _words(b), strict=True)
     return tuple(WordDifference(word, x, y) for word, (x, y) in enumerate(pairs) if x != y)
+
+
+def _words(page: bytes) -> tuple[int, ...]:
+    return struct.unpack(f">{PAGE_WORDS}H", page)

@@ -15,20 +15,19 @@ from __future__ import annotations
 
 import contextlib
 import errno
-import hashlib
 import os
 import re
 import sys
-import tempfile
 import threading
 import time
-from pathlib import Path
+from binascii import crc32
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import PortBusy, UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
 if sys.platform == "win32":
     import msvcrt
@@ -41,15 +40,17 @@ _PAST_THE_TEXT: Final = 4096
 _held: set[str] = set()
 
 
-def lock_folder() -> Path:
+def lock_folder() -> str:
     """Where lock files lie: the system's shared folder for them, else the one for temporary files."""
     named = os.environ.get("FATEKTOOL_LOCK_DIR")
     if named:
-        return Path(named)
+        return named
     for folder in _SHARED:
         if os.access(folder, os.W_OK | os.X_OK):
-            return Path(folder)
-    return Path(tempfile.gettempdir())
+            return folder
+    from tempfile import gettempdir
+
+    return gettempdir()
 
 
 class PortLock:
@@ -75,8 +76,8 @@ class PortLock:
         self._clock = clock
         self._sleep = sleep
         readable = re.sub(r"[^A-Za-z0-9.]+", "-", resource)[-60:].strip("-")
-        digest = hashlib.sha256(resource.encode(errors="surrogateescape")).hexdigest()[:10]
-        self.path = lock_folder() / f"fatektool-{readable}-{digest}.lock"
+        told_apart = crc32(resource.encode(errors="surrogateescape"))  # a-b, a/b; two alike would only wait
+        self.path: str | Path = f"{lock_folder()}/fatektool-{readable}-{told_apart:08x}.lock"
         self._descriptor: int | None = None
         self.found_doubt = False
         """True, once taken, if the holder before may have left an answer on its way."""
@@ -147,7 +148,9 @@ class PortLock:
 
         The umask would keep other users out, and this process may be killed before it has set that right.
         """
-        new = self.path.with_name(f"{self.path.name}.{os.getpid()}-{threading.get_ident()}")
+        from pathlib import Path
+
+        new = Path(f"{self.path}.{os.getpid()}-{threading.get_ident()}")
         descriptor = os.open(new, flags | os.O_CREAT | os.O_EXCL, 0o666)
         try:
             with contextlib.suppress(OSError, AttributeError):
@@ -163,8 +166,10 @@ class PortLock:
 
     def holder(self) -> int | None:
         """The process that holds the lock, as far as its file tells."""
+        from pathlib import Path
+
         try:
-            return int(self.path.read_bytes()[:20])
+            return int(Path(self.path).read_bytes()[:20])
         except (OSError, ValueError):
             return None
 

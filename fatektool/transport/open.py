@@ -26,6 +26,7 @@ def open_transport(
     stack: ExitStack,
     *,
     lock_wait_s: float = 10.0,
+    low_latency: bool = True,
     note: Callable[[str], None] = no_note,
     on_lock: Callable[[PortLock], object] = lambda _lock: None,
 ) -> Transport:
@@ -36,6 +37,7 @@ def open_transport(
         line: speed and format of a serial port; of a modem's, to the modem.
         stack: closes the transport and gives the lock back when it ends.
         lock_wait_s: how long to wait for another process.
+        low_latency: ask the driver of a serial port to hand on at once what it receives, on Linux.
         note: is told what a curious user may want to know.
         on_lock: is given the lock.
 
@@ -49,7 +51,7 @@ def open_transport(
         named = target.is_url or os.name == "nt"  # COM3 is a name, not a path
         device = target.path.upper() if named else os.path.realpath(target.path)
         on_lock(_lock(device, lock_wait_s, stack))
-        port = stack.enter_context(open_serial(target.path, line, note=note))
+        port = stack.enter_context(open_serial(target.path, line, low_latency=low_latency, note=note))
         if target.call is None:
             return port
         from fatektool.transport.modem import ModemTransport

@@ -286,7 +286,7 @@ class DeviceTransport(Transport):
         """Write all of ``data``."""
         if self._descriptor < 0:
             raise self._gone("closed")
-        rest = memoryview(data)
+        rest = data
         while rest:
             try:
                 rest = rest[os.write(self._descriptor, rest) :]
@@ -298,11 +298,12 @@ class DeviceTransport(Transport):
 
     def drain(self) -> bytes:
         """Take what was received already."""
+        if self._descriptor < 0 or not self._readable(0.0):  # there is nothing, as good as always
+            return b""
         taken = bytearray()
-        if self._descriptor >= 0:
-            with contextlib.suppress(OSError):
-                while len(taken) < DRAIN_LIMIT and (data := os.read(self._descriptor, 4096)):
-                    taken += data
+        with contextlib.suppress(OSError):
+            while len(taken) < DRAIN_LIMIT and (data := os.read(self._descriptor, 4096)):
+                taken += data
         return bytes(taken)
 
     def set_line(self, line: LineSettings) -> None:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _NET: Final = re.compile(
     r"(tcp|udp)://(?:\[([0-9A-Fa-f:.%\w]+)\]|([^/:\[\]@?#\s]+))(?::([0-9]{1,9}))?/?", re.ASCII
 )
-_SCHEME: Final = re.compile(r"[A-Za-z][A-Za-z0-9+.]*://")
+_SCHEME: Final = r"[A-Za-z][A-Za-z0-9+.]*://"
 DEFAULT_PORT: Final = 500
 
 
@@ -111,7 +111,7 @@ class Target:
     @property
     def is_url(self) -> bool:
         """True for a serial port that pyserial opens by URL."""
-        return self.on_serial_port and _SCHEME.match(self.path) is not None
+        return self.on_serial_port and re.match(_SCHEME, self.path) is not None
 
     @property
     def on_serial_port(self) -> bool:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from hypothesis import strategies as st
 
+from fatektool.errors import UsageError
 from fatektool.protocol.elements import KINDS, Element
 
 from .exhaustive import places_of
@@ -13,6 +14,8 @@ from .exhaustive import places_of
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from random import Random
+
+    from fatektool.protocol.codec import Codec
 
 FAMILIES: list[list[str]] = [
     ["R"],
@@ -75,6 +78,19 @@ def scattered(random: Random, symbol: str, within: int, count: int) -> list[Elem
     """So many elements of one kind, each once."""
     step = KINDS[symbol].step
     return [Element(symbol, step * n) for n in random.sample(range(within // step), count)]
+
+
+def sayable(elements: Iterable[Element], codec: Codec, *, writes: bool = False) -> list[Element]:
+    """Those that a protocol has; Modbus writes 32-bit counters one at a time, which is no search."""
+    found = []
+    for element in elements:
+        try:
+            codec.neighbourhood(element, writes=writes)
+        except UsageError:
+            continue
+        if not (writes and element.symbol == "DRC" and not codec.mixed_words(writes=True)):
+            found.append(element)
+    return found
 
 
 def apart(elements: Iterable[Element]) -> list[Element]:

@@ -24,7 +24,7 @@ from fatektool.protocol.modbus import ASCII, RTU, TCP
 from fatektool.protocol.modbus_map import parse_map
 
 from .exhaustive import Caps, Limited, least_read, least_write, places_of, wire_bytes
-from .sets import TURNAROUNDS, apart, element_sets, named, scattered, side_by_side, small_set
+from .sets import TURNAROUNDS, apart, element_sets, named, sayable, scattered, side_by_side, small_set
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -37,29 +37,16 @@ CODECS: list[Codec] = [RTU, ASCII, TCP]
 codecs = pytest.mark.parametrize("codec", CODECS, ids=lambda codec: codec.name)
 
 
-def sayable(elements: list[Element], *, writes: bool = False) -> list[Element]:
-    """Those that the standard map has; 32-bit counters are written one at a time, which is no search."""
-    found = []
-    for element in elements:
-        try:
-            RTU.neighbourhood(element, writes=writes)
-        except UsageError:
-            continue
-        if not (writes and element.symbol == "DRC"):
-            found.append(element)
-    return found
-
-
 def compare(
     elements: list[Element], codec: Codec, turnaround: float, read: Caps = READ, write: Caps = WRITE
 ) -> None:
-    wanted = sayable(elements)
+    wanted = sayable(elements, codec)
     plan = plan_reads(wanted, codec, turnaround=turnaround)
     said = f"{' '.join(map(str, wanted))} at {turnaround}"
     if wanted:
         least = least_read(wanted, codec, turnaround, caps=read)
         assert wire_bytes(plan, codec, turnaround) == pytest.approx(least), f"read {said}"
-    written = apart(sayable(elements, writes=True))
+    written = apart(sayable(elements, codec, writes=True))
     writes = plan_writes([(element, 0) for element in written], codec, turnaround=turnaround)
     if written:
         least = least_write(written, codec, turnaround, caps=write)
@@ -118,6 +105,17 @@ def test_larger_sets(seed: int) -> None:
 )
 def test_small_plans(text: str, plan: list[Request[Any]]) -> None:
     assert plan_reads(named(text), RTU, turnaround=10) == plan
+
+
+@pytest.mark.parametrize(
+    ("text", "requests"),
+    [("M0 M127", 1), ("M0 M128", 2), ("M187 M392", 2), ("M22 M59 M112 M318 M344 M390", 2)],
+)
+def test_a_gap_is_as_dear_as_its_bytes(text: str, requests: int) -> None:
+    """In ASCII a byte of eight discretes takes two characters, so less is read over."""
+    elements = named(text)
+    assert len(plan_reads(elements, ASCII)) == requests
+    compare(elements, ASCII, 0.0)
 
 
 def test_writes_are_long_and_touch_nothing_else() -> None:

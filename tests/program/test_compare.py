@@ -22,9 +22,11 @@ def test_a_word_that_differs_is_named_with_both_values() -> None:
     b = changed(a, 3)
     found = compare(a, b)
     before, after = a.pages[3][64:66], b.pages[3][64:66]
-    assert found.pages == (
-        PageDifference(3, (WordDifference(32, int.from_bytes(before, "big"), int.from_bytes(after, "big")),)),
+    assert found.pages == (PageDifference(3, a.pages[3], b.pages[3]),)
+    assert found.pages[0].words == (
+        WordDifference(32, int.from_bytes(before, "big"), int.from_bytes(after, "big")),
     )
+    assert found.pages[0].word_count == 1
     assert not found.same
 
 
@@ -49,7 +51,9 @@ def test_pages_that_only_one_has_differ_without_words() -> None:
     a, b = program(400), program(500)
     found = compare(a, b)
     assert (found.a_ladder_words, found.b_ladder_words) == (400, 500)
-    assert found.pages[-1] == PageDifference(8, ())
+    assert found.pages[-1] == PageDifference(8, None, b.pages[8])
+    assert found.pages[-1].words == ()
+    assert found.pages[-1].word_count == 0
     assert found.page_numbers == [0, 8]
     assert compare(b, a).page_numbers == [0, 8]
 

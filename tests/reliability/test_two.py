@@ -206,7 +206,7 @@ as_root = pytest.mark.skipif(
     not hasattr(os, "geteuid") or os.geteuid() != 0, reason="only root can be two users"
 )
 TRY = """
-import os, sys
+import os, pathlib, sys  # all that is loaded later: another user may not read this Python
 from fatektool.errors import FatektoolError
 from fatektool.transport.lock import PortLock
 os.setgroups([]); os.setgid({user}); os.setuid({user})

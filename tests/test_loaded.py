@@ -1,0 +1,176 @@
+"""What a command loads before it is done: counted, as a time would depend on the machine.
+
+Each is run in a process of its own, over TCP where it needs a PLC, with its lock file there as after a first
+time. What ``import click`` loads in such a process is not counted.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from functools import cache
+from importlib.util import find_spec
+from typing import TYPE_CHECKING
+
+import pytest
+
+from fatektool.simulator.build import build_simulation
+from fatektool.simulator.servers import Server, running
+from fatektool.transport.lock import PortLock
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+LOADED = "import sys; {action}; print(*sys.modules, file=sys.stderr)"
+
+LIBRARIES = {"rich", "pymodbus", "dulwich", "serial", "jsonschema"}
+"""Each is for one thing: a bar on a terminal, Modbus, a history, a serial port, a test."""
+
+HEAVY = {"asyncio", "git", "logging", "random", "ssl", "subprocess", "tempfile", "tomllib", "urllib.request"}
+"""Of the standard library, what no command on the way to a PLC has a use for."""
+
+OTHER_PLCS = {
+    "fatektool.simulator",
+    "fatektool.protocol.mseries",
+    "fatektool.protocol.mseries_data",
+    "fatektool.protocol.modbus",
+    "fatektool.protocol.modbus_data",
+    "fatektool.protocol.modbus_map",
+    "fatektool.protocol.modbus_pdu",
+    "fatektool.transport.memory",
+    "fatektool.transport.modem",
+    "fatektool.transport.serial_port",
+    "fatektool.transport.trace",
+    "fatektool.transport.udp",
+}
+"""Protocols and media that were not named."""
+
+OTHER_JOBS = {
+    "fatektool.history",
+    "fatektool.inventory.entries",
+    "fatektool.jobs.fleet",
+    "fatektool.jobs.restore",
+    "fatektool.jobs.snapshot",
+    "fatektool.report",
+    "fatektool.protocol.explain",
+    "fatektool.protocol.link_tables",
+}
+
+NEVER = LIBRARIES | HEAVY | OTHER_PLCS | OTHER_JOBS
+PLANNER = {"fatektool.planner", "fatektool.jobs.registers", "fatektool.jobs.selection"}
+PROGRAMS = {"fatektool.program", "fatektool.program.archive", "fatektool.jobs.reading", "hashlib"}
+
+
+@cache
+def loaded(action: str) -> frozenset[str]:
+    """The modules that are there when this was done in a fresh process."""
+    program = LOADED.format(action=action)
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    return frozenset(done.stderr.split())
+
+
+def beyond_click(*words: str) -> set[str]:
+    """What a command line loads that ``import click`` does not."""
+    found = loaded(f"from fatektool.cli import run; code = run({list(words)}); assert code == 0, code")
+    assert "click" in found
+    return set(found - loaded("import click"))
+
+
+def ours(modules: set[str]) -> set[str]:
+    return {name for name in modules if name.partition(".")[0] == "fatektool"}
+
+
+@pytest.fixture
+def target(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    """A PLC behind TCP, which was spoken to before."""
+    monkeypatch.setenv("FATEKTOOL_LOCK_DIR", str(tmp_path))
+    monkeypatch.chdir(tmp_path)
+    server = Server(build_simulation(ladder_words=400))
+    door = server.open_tcp()
+    lock = PortLock(door.address.removeprefix("tcp://"), 0)
+    lock.acquire()
+    lock.release()
+    assert os.path.exists(lock.path)  # noqa: PTH110  # it is text
+    with running(server):
+        yield door.address
+
+
+@pytest.mark.parametrize("name", sorted(OTHER_PLCS | OTHER_JOBS | PLANNER | PROGRAMS))
+def test_there_is_such_a_module(name: str) -> None:
+    """One that moved would never be found loaded."""
+    assert find_spec(name) is not None
+
+
+# --- the library ------------------------------------------------------------------------------------------
+
+
+def test_importing_the_library_loads_no_other() -> None:
+    assert not {"click", "rich", "serial"} & loaded("import fatektool; fatektool.__version__")
+    every = loaded("import fatektool; [getattr(fatektool, name) for name in fatektool.__all__]")
+    assert not every & ({"click"} | LIBRARIES | OTHER_PLCS)
+
+
+# --- without a PLC ----------------------------------------------------------------------------------------
+
+FRAME = {
+    "fatektool",
+    "fatektool.version",
+    "fatektool.errors",
+    "fatektool.cli",
+    "fatektool.cli.app",
+    "fatektool.cli.output",
+}
+
+
+def test_version_loads_the_frame_alone() -> None:
+    """No command, no transport, no planner, nothing of a protocol."""
+    found = beyond_click("--version")
+    assert ours(found) == FRAME
+    assert not found & (NEVER | {"json", "pathlib", "hashlib", "socket", "difflib"})
+    assert len(found) <= 14
+
+
+def test_help_loads_no_command() -> None:
+    found = beyond_click("--help")
+    assert ours(found) == FRAME
+    assert not found & (NEVER | {"json", "pathlib", "hashlib", "socket", "difflib"})
+    assert len(found) <= 28
+
+
+# --- over TCP ---------------------------------------------------------------------------------------------
+
+
+def test_status(target: str) -> None:
+    found = beyond_click("status", "-p", target)
+    assert not found & (NEVER | PLANNER | PROGRAMS)
+    assert not found & {"json", "pathlib", "encodings.idna", "fatektool.transport.limit"}
+    assert {name for name in ours(found) if name.startswith("fatektool.jobs.")} == {
+        "fatektool.jobs.status",
+        "fatektool.jobs.times",
+    }
+    assert {name for name in ours(found) if name.startswith("fatektool.transport.")} == {
+        f"fatektool.transport.{name}" for name in ("base", "lock", "open", "sockets", "target", "tcp", "wait")
+    }
+    assert len(found) <= 72
+
+
+def test_read(target: str) -> None:
+    found = beyond_click("read", "R0", "-p", target)
+    assert found >= PLANNER
+    assert not found & (NEVER | PROGRAMS | {"json", "pathlib", "encodings.idna"})
+    assert len(found) <= 90
+
+
+def test_backup(target: str) -> None:
+    found = beyond_click("backup", "here.json", "-p", target)
+    assert found >= PROGRAMS
+    assert not found & ((NEVER - {"random"}) | PLANNER | {"encodings.idna", "fatektool.transport.limit"})
+    assert len(found) <= 110
+
+
+def test_what_is_named_is_loaded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    found = beyond_click("status", "--brief", "-p", "sim:", "--trace", "wire.ndjson", "--json")
+    assert found >= {"fatektool.simulator", "fatektool.transport.memory", "fatektool.transport.trace", "json"}
