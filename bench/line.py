@@ -24,7 +24,7 @@ from fatektool.program.image import Program
 
 LIMITS = {9600: 1.01, 38400: 1.01, 115200: 1.01, 921600: 1.03}
 WORDS = {9600: 4096, 38400: 8192, 115200: 13184, 921600: 65535}
-RUNS = {921600: 3}
+RUNS = {921600: 4, 115200: 2}
 BITS = 10  # 7E1
 CHANGED = 10  # one page in so many
 
