@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from fatektool.batch import ask_all, tell_all
 from fatektool.errors import DataError, PlcError
 from fatektool.protocol.commands import (
+    DETAILED_BYTES,
     Control,
     ControlDiscrete,
     Loopback,
@@ -26,7 +27,6 @@ from fatektool.protocol.commands import (
     WritePage,
     WriteRegisters,
 )
-from fatektool.protocol.status import DETAILED_BYTES, RawStatus
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -85,6 +85,8 @@ class Plc:
             DataError: the answer has a layout that no paper describes.
         """
         status = self.link.ask(ReadDetailedStatus())
+        from fatektool.protocol.status import RawStatus  # loaded by its parser, not before the request is out
+
         if isinstance(status, RawStatus):
             raise DataError(
                 f"detailed status (53): expected {DETAILED_BYTES} bytes, got {len(status.raw)}, "

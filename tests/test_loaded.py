@@ -156,6 +156,27 @@ def test_status(target: str) -> None:
     assert len(found) <= 72
 
 
+BEFORE_THE_FIRST_BYTE = """
+import sys
+from fatektool.transport.tcp import TcpTransport
+def end(*_):
+    print(*sys.modules, file=sys.stderr)
+    sys.stderr.flush()
+    __import__("os")._exit(0)
+TcpTransport.write = end
+from fatektool.cli import run
+run(["status", "-p", "{target}"])
+"""
+
+
+def test_what_status_loads_before_its_first_byte(target: str) -> None:
+    program = BEFORE_THE_FIRST_BYTE.format(target=target)
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    found = set(done.stderr.split())
+    assert "fatektool.protocol.facon" in found
+    assert "fatektool.protocol.status" not in found  # what an answer is made of is loaded while it comes
+
+
 def test_read(target: str) -> None:
     found = beyond_click("read", "R0", "-p", target)
     assert found >= PLANNER

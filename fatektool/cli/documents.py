@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from fatektool.jobs.times import utc
-from fatektool.protocol.status import DetailedStatus, RawStatus
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -59,6 +58,8 @@ def status_document(report: StatusReport) -> dict[str, Any]:
 
 def _system(report: StatusReport) -> dict[str, Any] | None:
     """What 53 told, marked where the layout is assumed, and as it came where there is none."""
+    from fatektool.protocol.status import DetailedStatus, RawStatus  # not before there is one
+
     match report.detailed:
         case DetailedStatus(system=system, assumed=assumed):
             return ({"layout": "assumed"} if assumed else {}) | system.document()

@@ -11,10 +11,11 @@ from fatektool.cli.options import Connection, connection_options
 from fatektool.cli.output import Voice, table
 from fatektool.jobs.status import StatusReport, read_status
 from fatektool.protocol.commands import Command
-from fatektool.protocol.status import DetailedStatus, RawStatus, System
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from fatektool.protocol.status import System
 
 
 @click.command("status", epilog="Example: fatektool status -p /dev/ttyUSB0")
@@ -43,6 +44,8 @@ def _rows(report: StatusReport) -> Iterator[tuple[str, object]]:
     yield "ID", "set" if flags.id_set else "not set"
     if not report.brief.m_series:
         yield "model code", f"{report.brief.status2:02X}, {report.brief.model or 'not in the paper'}"
+    from fatektool.protocol.status import DetailedStatus, RawStatus  # not before there is one
+
     match report.detailed:
         case DetailedStatus(system=system, assumed=assumed):
             if assumed:

@@ -22,17 +22,19 @@ from enum import IntEnum
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Generic, TypeVar
 
 from fatektool.errors import UsageError
-from fatektool.protocol.status import BriefStatus, DetailedStatus, RawStatus
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from fatektool.protocol.elements import Element, Kind
+    from fatektool.protocol.status import BriefStatus, DetailedStatus, RawStatus  # noqa: F401  # in strings
 
 A = TypeVar("A")
 
 PAGE_WORDS: Final = 64
 PAGE_BYTES: Final = 2 * PAGE_WORDS
+BRIEF_BYTES: Final = 3
+DETAILED_BYTES: Final = 64
 MAX_DISCRETES: Final = 256
 MAX_READ_WORDS: Final = 64
 MAX_MIXED_WRITE_WORDS: Final = 32
@@ -103,7 +105,7 @@ class Request(Generic[A]):
 
 
 @dataclass(frozen=True, slots=True)
-class ReadBriefStatus(Request[BriefStatus]):
+class ReadBriefStatus(Request["BriefStatus"]):
     """40: three status bytes."""
 
     command: ClassVar[Command] = Command.BRIEF_STATUS
@@ -259,7 +261,7 @@ class WritePage(Request[None]):
 
 
 @dataclass(frozen=True, slots=True)
-class ReadDetailedStatus(Request[DetailedStatus | RawStatus]):
+class ReadDetailedStatus(Request["DetailedStatus | RawStatus"]):
     """53: 64 status bytes, the ladder size among them; raw bytes where nobody says what they mean."""
 
     command: ClassVar[Command] = Command.DETAILED_STATUS

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar, cast
 
 from fatektool.errors import FrameError, PlcRefused, UsageError
 from fatektool.protocol.commands import (
+    BRIEF_BYTES,
+    DETAILED_BYTES,
     PAGE_BYTES,
     Command,
     Control,
@@ -51,12 +53,12 @@ from fatektool.protocol.facon_text import (
     words_text,
 )
 from fatektool.protocol.plc_errors import asked, refusal
-from fatektool.protocol.status import BRIEF_BYTES, DETAILED_BYTES, BriefStatus, DetailedStatus
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fatektool.protocol.elements import Element
+    from fatektool.protocol.status import BriefStatus, DetailedStatus
 
 A = TypeVar("A")
 
@@ -157,6 +159,18 @@ def _parse_write_page(data: bytes) -> WritePage:
 # --- answers --------------------------------------------------------------------------------------
 
 
+def _brief(chars: bytes) -> BriefStatus:
+    from fatektool.protocol.status import BriefStatus  # not before the request is on its way
+
+    return BriefStatus.parse(unhex(chars))
+
+
+def _detailed(chars: bytes) -> DetailedStatus:
+    from fatektool.protocol.status import DetailedStatus  # likewise
+
+    return DetailedStatus.parse(unhex(chars))
+
+
 def _take_mixed(request: ReadMixed, chars: bytes) -> tuple[int, ...]:
     values = []
     at = 0
@@ -200,7 +214,7 @@ _FIELDS: Final[dict[int, _Fields]] = {
         lambda _: b"",
         _parse_empty(ReadBriefStatus),
         lambda _: 2 * BRIEF_BYTES,
-        lambda _, chars: BriefStatus.parse(unhex(chars)),
+        lambda _, chars: _brief(chars),
         lambda _, answer: to_hex(answer.to_bytes()),
     ),
     Command.RUN_STOP: _acknowledged(lambda r: b"1" if r.run else b"0", _parse_run_stop),
@@ -254,7 +268,7 @@ _FIELDS: Final[dict[int, _Fields]] = {
         lambda _: b"",
         _parse_empty(ReadDetailedStatus),
         lambda _: 2 * DETAILED_BYTES,
-        lambda _, chars: DetailedStatus.parse(unhex(chars)),
+        lambda _, chars: _detailed(chars),
         lambda _, answer: to_hex(answer.raw),
     ),
 }

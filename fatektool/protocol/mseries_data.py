@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar, cast
 
 from fatektool.errors import FrameError, UsageError
 from fatektool.protocol.commands import (
+    BRIEF_BYTES,
+    DETAILED_BYTES,
     Command,
     Control,
     ControlDiscrete,
@@ -46,7 +48,7 @@ from fatektool.protocol.mseries_bytes import (
     words_bytes,
 )
 from fatektool.protocol.plc_errors import asked, refusal
-from fatektool.protocol.status import BRIEF_BYTES, DETAILED_BYTES, BriefStatus, DetailedStatus, RawStatus
+from fatektool.protocol.status import BriefStatus, DetailedStatus, RawStatus
 
 if TYPE_CHECKING:
     from collections.abc import Callable

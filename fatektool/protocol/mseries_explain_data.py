@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from fatektool.errors import FrameError
 from fatektool.protocol import explain_data
-from fatektool.protocol.commands import Command
+from fatektool.protocol.commands import DETAILED_BYTES, Command
 from fatektool.protocol.explain_data import ACKNOWLEDGED, Cutter
 from fatektool.protocol.mseries_bytes import VALUE_BYTES, element_size, take_value
 from fatektool.protocol.mseries_data import COMMANDS
 from fatektool.protocol.plc_errors import MEANINGS
-from fatektool.protocol.status import DETAILED_BYTES, BriefStatus, DetailedStatus
+from fatektool.protocol.status import BriefStatus, DetailedStatus
 
 if TYPE_CHECKING:
     from fatektool.protocol.commands import Request

@@ -23,9 +23,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from fatektool.errors import FrameError
-
-BRIEF_BYTES: Final = 3
-DETAILED_BYTES: Final = 64
+from fatektool.protocol.commands import BRIEF_BYTES, DETAILED_BYTES
 
 MODELS: Final = {
     0xFF: "FB, 8K steps",

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from fatektool.cli.alarms import Told
     from fatektool.jobs.fleet import Turn
 
-PLCS = 12
+PLCS = 5
 
 
 class Large(dict[str, Any]):

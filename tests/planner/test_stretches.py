@@ -29,7 +29,7 @@ def stretches(draw: st.DrawFn) -> Stretch:
     codec=st.sampled_from(["facon", "mseries"]),
     turnaround=st.sampled_from([0.0, 9.6, 900.0]),
 )
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=40, deadline=None)
 def test_a_plan_of_stretches_is_that_of_their_elements(
     parts: list[Stretch], singles: list[Element], codec: str, turnaround: float
 ) -> None:

@@ -193,6 +193,8 @@ def test_any_bytes_as_an_answer(spoken: Spoken, data: st.DataObject) -> None:
 @given(st.data())
 def test_any_bytes_as_a_request(spoken: Spoken, data: st.DataObject) -> None:
     command, content = data.draw(st.integers(0, 255)), data.draw(st.binary(max_size=60))
+    if spoken.codec.name == "facon":  # whose frames never hold STX or ETX
+        content = content.translate(None, b"\x02\x03")
     raw = spoken.framed(0x51, 1, command, content)
     try:
         request = spoken.codec.parse_request(Frame(1, command, content, raw))
