@@ -192,7 +192,7 @@ def parse_snapshot(data: bytes, name: str, note: Callable[[str], None] = no_note
             file=name,
         )
     for key, holds in _CHECKS.items():
-        if not holds(document.get(key)):
+        if key not in document or not holds(document[key]):
             raise DataError(f"{name}: {key} is missing or damaged", file=name)
     if set(document["values"]) != set(document["elements"]):
         key = min(set(document["values"]) ^ set(document["elements"]))

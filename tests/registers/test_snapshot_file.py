@@ -87,6 +87,14 @@ def test_damage_is_named(name: str) -> None:
     assert len(caught.value.message) < 300
 
 
+@pytest.mark.parametrize("key", sorted(snapshot_of("R0").document()))
+def test_every_key_must_be_there(key: str) -> None:
+    document = snapshot_of("R0").document()
+    del document[key]
+    with pytest.raises(DataError, match=r"^a\.json: "):
+        parse_snapshot(json.dumps(document).encode(), "a.json")
+
+
 @pytest.mark.parametrize(
     "data",
     [
