@@ -16,23 +16,27 @@ from fatektool.protocol.commands import (
     DETAILED_BYTES,
     PAGE_BYTES,
     Command,
-    Control,
-    ControlDiscrete,
     Loopback,
     ReadBriefStatus,
     ReadDetailedStatus,
     ReadDisabled,
     ReadDiscretes,
     ReadMixed,
-    ReadPage,
     ReadRegisters,
     Request,
-    RunStop,
-    WriteDiscretes,
-    WriteMixed,
-    WritePage,
-    WriteRegisters,
     require_run_limit,
+)
+from fatektool.protocol.facon_requests import (
+    parse_control,
+    parse_empty,
+    parse_read_mixed,
+    parse_read_page,
+    parse_read_run,
+    parse_run_stop,
+    parse_write_discretes,
+    parse_write_mixed,
+    parse_write_page,
+    parse_write_registers,
 )
 from fatektool.protocol.facon_text import (
     CHARS,
@@ -40,11 +44,7 @@ from fatektool.protocol.facon_text import (
     bits_text,
     count_text,
     element_text,
-    nothing_after,
     take_bits,
-    take_count,
-    take_element,
-    take_run,
     take_value,
     take_words,
     to_hex,
@@ -63,97 +63,6 @@ if TYPE_CHECKING:
 A = TypeVar("A")
 
 _NO_ERROR: Final = b"0"
-
-
-def _parse_read_run(
-    make: Callable[[Element, int], Request[Any]], *, zero_is_256: bool
-) -> Callable[[bytes], Request[Any]]:
-    def parse(data: bytes) -> Request[Any]:
-        element, count, rest = take_run(data, zero_is_256=zero_is_256)
-        nothing_after(rest)
-        return make(element, count)
-
-    return parse
-
-
-# --- requests -------------------------------------------------------------------------------------
-
-
-def _parse_empty(make: Callable[[], Request[Any]]) -> Callable[[bytes], Request[Any]]:
-    def parse(data: bytes) -> Request[Any]:
-        nothing_after(data)
-        return make()
-
-    return parse
-
-
-def _parse_run_stop(data: bytes) -> RunStop:
-    if data not in {b"0", b"1"}:
-        raise FrameError("expected 1 (run) or 0 (stop)", raw=data)
-    return RunStop(data == b"1")
-
-
-def _parse_control(data: bytes) -> ControlDiscrete:
-    if data[:1] not in {b"1", b"2", b"3", b"4"}:
-        raise FrameError("expected 1 disable, 2 enable, 3 set or 4 reset", raw=data)
-    element, at = take_element(data, 1)
-    nothing_after(data[at:])
-    return ControlDiscrete(Control(int(data[:1])), element)
-
-
-def _parse_write_discretes(data: bytes) -> WriteDiscretes:
-    element, count, rest = take_run(data, zero_is_256=True)
-    if len(rest) != count:
-        raise FrameError(f"expected {count} values, got {len(rest)}", raw=rest)
-    return WriteDiscretes(element, take_bits(rest))
-
-
-def _parse_write_registers(data: bytes) -> WriteRegisters:
-    element, count, rest = take_run(data, zero_is_256=False)
-    values = take_words(rest, element.kind.bits)
-    if len(values) != count:
-        raise FrameError(f"expected {count} values, got {len(values)}", raw=rest)
-    return WriteRegisters(element, values)
-
-
-def _parse_read_mixed(data: bytes) -> ReadMixed:
-    elements = []
-    at = 2
-    for _ in range(take_count(data)):
-        element, at = take_element(data, at)
-        elements.append(element)
-    nothing_after(data[at:])
-    return ReadMixed(tuple(elements))
-
-
-def _parse_write_mixed(data: bytes) -> WriteMixed:
-    items = []
-    at = 2
-    for _ in range(take_count(data)):
-        element, at = take_element(data, at)
-        end = at + CHARS[element.kind.bits]
-        if end > len(data):
-            raise FrameError(f"the value of {element} is cut off", raw=data)
-        items.append((element, take_value(element, data[at:end])))
-        at = end
-    nothing_after(data[at:])
-    return WriteMixed(tuple(items))
-
-
-def _parse_page_number(data: bytes) -> int:
-    page = unhex(data[:4])
-    if len(page) != 2:
-        raise FrameError("expected a page number of 4 hex digits", raw=data)
-    return int.from_bytes(page, "big")
-
-
-def _parse_read_page(data: bytes) -> ReadPage:
-    nothing_after(data[4:])
-    return ReadPage(_parse_page_number(data))
-
-
-def _parse_write_page(data: bytes) -> WritePage:
-    return WritePage(_parse_page_number(data), unhex(data[4:]))
 
 
 # --- answers --------------------------------------------------------------------------------------
@@ -202,7 +111,7 @@ def _acknowledged(request: Callable[[Any], bytes], parse_request: Callable[[byte
 def _read_bits(make: Callable[[Element, int], Request[Any]]) -> _Fields:
     return _Fields(
         lambda r: count_text(r.count) + element_text(r.first),
-        _parse_read_run(make, zero_is_256=True),
+        parse_read_run(make, zero_is_256=True),
         lambda r: int(r.count),
         lambda _, chars: take_bits(chars),
         lambda _, values: bits_text(values),
@@ -212,42 +121,42 @@ def _read_bits(make: Callable[[Element, int], Request[Any]]) -> _Fields:
 _FIELDS: Final[dict[int, _Fields]] = {
     Command.BRIEF_STATUS: _Fields(
         lambda _: b"",
-        _parse_empty(ReadBriefStatus),
+        parse_empty(ReadBriefStatus),
         lambda _: 2 * BRIEF_BYTES,
         lambda _, chars: _brief(chars),
         lambda _, answer: to_hex(answer.to_bytes()),
     ),
-    Command.RUN_STOP: _acknowledged(lambda r: b"1" if r.run else b"0", _parse_run_stop),
+    Command.RUN_STOP: _acknowledged(lambda r: b"1" if r.run else b"0", parse_run_stop),
     Command.CONTROL_DISCRETE: _acknowledged(
-        lambda r: b"%d%b" % (r.control, element_text(r.element)), _parse_control
+        lambda r: b"%d%b" % (r.control, element_text(r.element)), parse_control
     ),
     Command.READ_DISABLED: _read_bits(ReadDisabled),
     Command.READ_DISCRETES: _read_bits(ReadDiscretes),
     Command.WRITE_DISCRETES: _acknowledged(
         lambda r: count_text(len(r.values)) + element_text(r.first) + bits_text(r.values),
-        _parse_write_discretes,
+        parse_write_discretes,
     ),
     Command.READ_REGISTERS: _Fields(
         lambda r: count_text(r.count) + element_text(r.first),
-        _parse_read_run(ReadRegisters, zero_is_256=False),
+        parse_read_run(ReadRegisters, zero_is_256=False),
         lambda r: r.count * CHARS[r.first.kind.bits],
         lambda r, chars: take_words(chars, r.first.kind.bits),
         lambda r, values: words_text(values, r.first.kind.bits),
     ),
     Command.WRITE_REGISTERS: _acknowledged(
         lambda r: count_text(len(r.values)) + element_text(r.first) + words_text(r.values, r.first.kind.bits),
-        _parse_write_registers,
+        parse_write_registers,
     ),
     Command.READ_MIXED: _Fields(
         lambda r: count_text(len(r.elements)) + b"".join(map(element_text, r.elements)),
-        _parse_read_mixed,
+        parse_read_mixed,
         lambda r: sum(CHARS[element.kind.bits] for element in r.elements),
         _take_mixed,
         _mixed_values,
     ),
     Command.WRITE_MIXED: _acknowledged(
         lambda r: count_text(len(r.items)) + b"".join(element_text(e) + value_text(e, v) for e, v in r.items),
-        _parse_write_mixed,
+        parse_write_mixed,
     ),
     Command.LOOPBACK: _Fields(
         lambda r: bytes(r.data),
@@ -258,15 +167,15 @@ _FIELDS: Final[dict[int, _Fields]] = {
     ),
     Command.READ_PAGE: _Fields(
         lambda r: b"%04X" % r.page,
-        _parse_read_page,
+        parse_read_page,
         lambda _: 2 * PAGE_BYTES,
         lambda _, chars: unhex(chars),
         lambda _, data: to_hex(data),
     ),
-    Command.WRITE_PAGE: _acknowledged(lambda r: b"%04X%b" % (r.page, to_hex(r.data)), _parse_write_page),
+    Command.WRITE_PAGE: _acknowledged(lambda r: b"%04X%b" % (r.page, to_hex(r.data)), parse_write_page),
     Command.DETAILED_STATUS: _Fields(
         lambda _: b"",
-        _parse_empty(ReadDetailedStatus),
+        parse_empty(ReadDetailedStatus),
         lambda _: 2 * DETAILED_BYTES,
         lambda _, chars: _detailed(chars),
         lambda _, answer: to_hex(answer.raw),
