@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 _SLICE_S: Final = 0.02
 _PTY_FORMAT: Final = "8N1"
+_PORT_ERRORS: Final = (OSError, ValueError, NotImplementedError)
+"""What pyserial raises: SerialException is an OSError, and the last is its word for what a system lacks."""
 
 
 def open_serial(
@@ -54,11 +56,7 @@ def open_serial(
     if low_latency and not pty and sys.platform == "linux" and "://" not in target:
         try:
             port.set_low_latency_mode(True)
-        except (
-            ValueError,
-            OSError,
-            NotImplementedError,
-        ) as error:  # the last is pyserial's, on other systems
+        except _PORT_ERRORS as error:
             note(f"{target}: the driver has no low latency mode: {error}")
     if hasattr(port, "fd") and os.name == "posix" and "://" not in target:  # spy:// wants to be asked
         if not (pty or check_parity(port.fd, line)):
@@ -82,7 +80,7 @@ def _set_line(target: str, line: LineSettings, port: Any) -> None:
                 "stopbits": line.stop_bits,
             }
         )
-    except (OSError, ValueError, NotImplementedError) as error:
+    except _PORT_ERRORS as error:
         raise _open_error(target, line, error) from error
     except Exception as error:  # as when opening
         if type(error).__name__ != "error" and "://" not in target:
@@ -135,7 +133,7 @@ def _open(target: str, line: LineSettings) -> Any:
             write_timeout=WRITE_TIMEOUT_S,
             exclusive=True,
         )
-    except (OSError, ValueError, NotImplementedError) as error:  # SerialException is an OSError
+    except _PORT_ERRORS as error:
         raise _open_error(target, line, error) from error
     except Exception as error:  # a URL handler or termios with an error of its own
         if type(error).__name__ != "error" and "://" not in target:
