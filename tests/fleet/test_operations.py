@@ -120,7 +120,7 @@ def test_the_inventory_to_copy() -> None:
 
 
 def words_of(command: str, place: Path) -> str:
-    return re.sub(r"/etc/fatektool|/var/lib/fatektool|/var/lib/node_exporter", str(place), command)
+    return re.sub(r"/etc/fatektool|/var/lib/fatektool|/var/lib/prometheus/node-exporter", str(place), command)
 
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="cron starts a shell")
@@ -141,7 +141,7 @@ def test_crontab(plant: Hall, place: Path) -> None:
     done = shell(words_of(jobs[0], place))
     assert done.returncode == 1
     assert done.stdout.startswith("press  FAILED 4  ")
-    assert {path.name for path in place.glob("*.prom")} == {"fatek.prom", "fatek-check.prom"}
+    assert {path.name for path in place.glob("*.prom")} == {"fatek-backup.prom", "fatek-check.prom"}
 
 
 def unit(name: str) -> dict[str, dict[str, str]]:
@@ -153,7 +153,7 @@ def unit(name: str) -> dict[str, dict[str, str]]:
 
 def test_systemd(cli: Cli, plant: Hall, place: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     service = unit("fatektool-fleet.service")["Service"]
-    program, *words = shlex.split(service["ExecStart"].replace("%S", str(place)))
+    program, *words = shlex.split(words_of(service["ExecStart"].replace("%S", str(place)), place))
     assert (program, service["Type"]) == ("/usr/local/bin/fatektool", "oneshot")
     assert "/run/lock" in service["ReadWritePaths"]
     name, _, path = service["Environment"].partition("=")
@@ -164,7 +164,8 @@ def test_systemd(cli: Cli, plant: Hall, place: Path, monkeypatch: pytest.MonkeyP
         done = cli(*words)
         assert (done.code, done.out, done.err) == (0, "", "")
     kept = {path.name for path in (place / "fatektool").iterdir()}
-    assert kept == {"press.json", "oven.json", "history", "fatek.prom"}
+    assert kept == {"press.json", "oven.json", "history"}
+    assert (place / "fatek-backup.prom").exists()  # where the node exporter of Debian looks
     timer = unit("fatektool-fleet.timer")
     assert timer["Timer"]["OnCalendar"]
     assert timer["Install"]["WantedBy"] == "timers.target"
