@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fatektool.cli.documents import where
-from fatektool.cli.link_result import result_document
+from fatektool.cli.link_result import abnormal_rows, result_document
 from fatektool.cli.options import Connection, connection_options
 from fatektool.cli.output import Voice, table
 from fatektool.cli.read import warn_of
 from fatektool.jobs.link_ports import PortsReport, read_ports
+from fatektool.protocol.link_codes import TRANSACTIONS, meaning, next_step
+from fatektool.protocol.link_kinds import TableKind
 from fatektool.protocol.link_settings import DIALLING, PROFILES
 
 if TYPE_CHECKING:
@@ -20,7 +22,11 @@ if TYPE_CHECKING:
 
     from fatektool.client import Plc
     from fatektool.protocol.link_ports import Port
+    from fatektool.protocol.link_results import TransactionResult
     from fatektool.protocol.link_settings import HighSpeedLink, Modem
+
+_KEEPERS = (*TRANSACTIONS, TableKind.MD1)
+"""The instructions whose last result a port keeps; which of them it was, the registers do not say."""
 
 
 @click.command("ports", epilog="Example: fatektool link ports -p /dev/ttyUSB0")
@@ -49,7 +55,7 @@ def _document(plc: Plc, report: PortsReport) -> dict[str, Any]:
             asdict(port)
             | {
                 "parameters": _hex(port.parameters),
-                "last_result": None if port.last_result is None else result_document(port.last_result),
+                "last_result": None if port.last_result is None else _result_document(port.last_result),
             }
             for port in report.ports
         ],
@@ -63,6 +69,11 @@ def _document(plc: Plc, report: PortsReport) -> dict[str, Any]:
         },
         "errors": report.errors,
     }
+
+
+def _result_document(result: TransactionResult) -> dict[str, Any]:
+    said = meaning(result.code, _KEEPERS), next_step(result.code, _KEEPERS)
+    return result_document(result, *said)
 
 
 def _hex(word: int | None) -> str | None:
@@ -89,11 +100,10 @@ def _block(title: str, rows: list[tuple[str, object]]) -> Iterator[str]:
 def _port_rows(port: Port) -> list[tuple[str, object]]:
     result = port.last_result
     told = None
-    if result is not None and port.continuous:
-        told = (
-            f"{result.code:X}, {result.meaning} (transaction {result.transaction}, station {result.station})"
-        )
-    elif result is not None:
+    if result is not None:
+        said = meaning(result.code, _KEEPERS)
+        told = f"{result.code:X}, {said} (transaction {result.transaction}, station {result.station})"
+    elif port.continuous is False:
         told = "kept for continuous execution alone; else see 'fatektool link result'"
     return [
         ("state", _word(port.free, "free", "busy")),
@@ -118,15 +128,12 @@ def _high_speed_rows(link: HighSpeedLink) -> list[tuple[str, object]]:
     station = None
     if link.station is not None:
         station = f"{link.station} ({'set' if link.station_set else 'shown'} by R4055)"
-    abnormal = link.abnormal_station
-    log = link.abnormal_count
     return [
         ("this PLC", _word(link.slave, "slave", "no slave")),
         ("cycles", _word(link.one_cycle, "one, then stop", "for ever")),
         ("master station", link.master_station),
         ("own station", station),
-        ("abnormal station", "none" if abnormal == 0 else abnormal),
-        ("abnormal answers", f"{log}, {link.abnormal}" if log and link.abnormal else log),
+        *abnormal_rows(link),
         ("time-out", f"{link.timeout} (R4160)" if link.timeout is not None else "by the parameters"),
         ("parameters", None if link.parameters is None else f"{link.parameters:04X}H"),
     ]

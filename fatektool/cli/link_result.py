@@ -11,7 +11,9 @@ from fatektool.cli.options import Connection, connection_options
 from fatektool.cli.output import Voice, table
 from fatektool.jobs.link_ports import ResultReport, read_result
 from fatektool.jobs.link_table import parse_start
-from fatektool.protocol.link_tables import TableKind
+from fatektool.protocol.link_codes import TRANSACTIONS
+from fatektool.protocol.link_kinds import TableKind
+from fatektool.protocol.link_settings import ABNORMAL_STEP, UNWATCHED
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -19,38 +21,43 @@ if TYPE_CHECKING:
     from fatektool.client import Plc
     from fatektool.protocol.elements import Element
     from fatektool.protocol.link_results import TransactionResult
+    from fatektool.protocol.link_settings import HighSpeedLink
 
 KINDS = [kind.value for kind in TableKind]
-_MESSAGES = {"md1", "md2"}
-_RESULT_ALONE = {*_MESSAGES, "md3"}
-"""Kinds whose WR+0 has a result code alone, and whose WR+1 is the instruction's own."""
 
 
-@click.command("result", epilog="Example: fatektool link result R100 -p /dev/ttyUSB0")
+@click.command("result", epilog="Example: fatektool link result R100 --kind md0 -p /dev/ttyUSB0")
 @click.argument("wr", metavar="WR")
 @click.option(
     "--kind",
     type=click.Choice(KINDS, case_sensitive=False),
-    help="What the instruction does; md1 and md2 show what was received.",
+    help="CLINK's mode (FUN151), or mbus (FUN150): codes differ by kind. md1 and md2 show what was "
+    "received, md3 the errors of the running link.",
 )
-@click.option("--check", is_flag=True, help="Exit 1 if the result is not 0.")
+@click.option(
+    "--check",
+    is_flag=True,
+    help="Exit 1 if the result is not 0, or, of md3, if R4058 or R4059 holds an error.",
+)
 @connection_options
 def result_command(wr: str, connection: Connection, voice: Voice, *, kind: str | None, check: bool) -> int:
     """Explain the registers from operand WR on: result, station, command, where the instruction stands."""
     start = parse_start(wr, "WR")
     with connection.open(voice) as plc:
-        report = read_result(plc, start, message=kind in _MESSAGES)
-        document = _document(plc, start, kind, report)
-    voice.show(document, _lines(report, kind))
-    return int(check and report.state.result.code != 0)
+        report = read_result(plc, start, None if kind is None else TableKind(kind))
+        document = _document(plc, start, report)
+    voice.show(document, _lines(report))
+    return int(check and not report.good)
 
 
-def result_document(result: TransactionResult, *, alone: bool = False) -> dict[str, Any]:
+def result_document(
+    result: TransactionResult, meaning: str, next_step: str | None, *, alone: bool = False
+) -> dict[str, Any]:
     """WR+0 and WR+1 as JSON has them; ``alone`` where there is a result code and nothing else."""
     return {
         "code": f"{result.code:X}",
-        "meaning": result.meaning,
-        "next_step": result.next_step,
+        "meaning": meaning,
+        "next_step": next_step,
         "transaction": None if alone else result.transaction,
         "station": None if alone else result.station,
         "command": None if alone else f"{result.command:02X}",
@@ -58,8 +65,13 @@ def result_document(result: TransactionResult, *, alone: bool = False) -> dict[s
     }
 
 
-def _document(plc: Plc, start: Element, kind: str | None, report: ResultReport) -> dict[str, Any]:
-    operation = report.state.operation
+def _is_alone(report: ResultReport) -> bool:
+    """True for a kind whose WR+0 has a result code alone, and whose WR+1 is the instruction's own."""
+    return report.kind is not None and report.kind not in TRANSACTIONS
+
+
+def _document(plc: Plc, start: Element, report: ResultReport) -> dict[str, Any]:
+    operation, high_speed = report.state.operation, report.high_speed
     message = None
     if report.received_length is not None:
         message = {"length": report.received_length, "data": report.received.hex(" ").upper()}
@@ -67,40 +79,70 @@ def _document(plc: Plc, start: Element, kind: str | None, report: ResultReport) 
         "schema": "fatektool.link-result/1",
         **where(plc),
         "wr": str(start),
-        "kind": kind,
-        "result": result_document(report.state.result, alone=kind in _RESULT_ALONE),
+        "kind": None if report.kind is None else report.kind.value,
+        "result": result_document(
+            report.state.result, report.meaning, report.next_step, alone=_is_alone(report)
+        ),
         "waiting": operation.waiting,
         "repeated": operation.repeated,
         "active": operation.active,
         "error": operation.error,
         "done": operation.done,
+        "high_speed_link": None
+        if high_speed is None
+        else {
+            "abnormal_station": high_speed.abnormal_station,
+            "abnormal_code": high_speed.abnormal_code,
+            "abnormal": high_speed.abnormal,
+            "abnormal_count": high_speed.abnormal_count,
+        },
         "received": message,
         "words": [f"{word:04X}" for word in report.state.words],
     }
 
 
-def _lines(report: ResultReport, kind: str | None) -> Iterator[str]:
+def _lines(report: ResultReport) -> Iterator[str]:
     result, operation = report.state.result, report.state.operation
-    rows: list[tuple[str, object]] = [("result", f"{result.code:X}, {result.meaning}")]
-    if result.next_step is not None:
-        rows.append(("do", result.next_step))
-    if kind not in _RESULT_ALONE:
+    rows: list[tuple[str, object]] = [("result", f"{result.code:X}, {report.meaning}")]
+    if report.next_step is not None:
+        rows.append(("do", report.next_step))
+    if not _is_alone(report):
         command = result.command_meaning or "no command of a transaction"
         rows += [
             ("transaction", result.transaction),
             ("station", result.station),
             ("command", f"{result.command:02X}H, {command}"),
         ]
-    outputs = {"ACT": operation.active, "ERR": operation.error, "DN": operation.done}
-    rows += [
-        ("outputs", " ".join(name for name, on in outputs.items() if on) or "none"),
-        ("port", "waits for it, another instruction has it" if operation.waiting else "not waited for"),
-        ("run", "not the first" if operation.repeated else "the first, or none yet"),
-    ]
+    if operation.active is not None:
+        outputs = {"ACT": operation.active, "ERR": operation.error, "DN": operation.done}
+        rows += [
+            ("outputs", " ".join(name for name, on in outputs.items() if on) or "none"),
+            ("port", "waits for it, another instruction has it" if operation.waiting else "not waited for"),
+        ]
+    if operation.repeated is not None:
+        rows.append(("run", "not the first" if operation.repeated else "the first, or none yet"))
+    if report.high_speed is not None:
+        rows += abnormal_rows(report.high_speed)
+        rows += [] if report.high_speed.good else [("do", ABNORMAL_STEP)]
+        rows.append(("note", UNWATCHED))
     if report.received_length is not None:
         data = report.received
         text = "".join(chr(byte) if 0x20 <= byte < 0x7F else "." for byte in data)
         rows.append(("received", f"{report.received_length} bytes"))
         if data:
             rows += [("data", data.hex(" ").upper()), ("text", text)]
+    if report.kind is None:
+        rows.append(("kind", "not named: --kind says which of these readings holds"))
     yield from table(rows)
+
+
+def abnormal_rows(link: HighSpeedLink) -> list[tuple[str, object]]:
+    """R4058 and R4059 by name and value; None for what the PLC does not have."""
+    station, count = link.abnormal_station, link.abnormal_count
+    logged = None
+    if count is not None:
+        logged = f"{count}, {link.abnormal}" if link.abnormal else count
+    return [
+        ("abnormal station", None if station is None else f"{station or 'none'} (R4058)"),
+        ("abnormal answers", None if logged is None else f"{logged} (R4059)"),
+    ]

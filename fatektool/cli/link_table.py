@@ -15,7 +15,8 @@ from fatektool.jobs.link_table import parse_start, read_table
 from fatektool.jobs.link_toml import MAX_TOML, load_table
 from fatektool.jobs.link_toml_text import dump_table
 from fatektool.program.files import read_bounded, require_place, write_whole
-from fatektool.protocol.link_tables import TableKind, place_faults
+from fatektool.protocol.link_kinds import TableKind
+from fatektool.protocol.link_tables import place_faults
 
 if TYPE_CHECKING:
     from collections.abc import Callable

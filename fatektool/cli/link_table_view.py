@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.protocol.link_checks import CLINK_COMMANDS, HIGH_SPEED_COMMANDS, MBUS_COMMANDS
+from fatektool.protocol.link_codes import meaning
 from fatektool.protocol.link_messages import MessageTable
 from fatektool.protocol.link_operands import (
     CLINK_TYPES,
@@ -12,12 +13,12 @@ from fatektool.protocol.link_operands import (
     MBUS_MASTER_TYPES,
     MBUS_SLAVE_TYPES,
 )
-from fatektool.protocol.link_results import meaning
 from fatektool.protocol.link_tables import HighSpeedTable, MbusTable, Table, kind_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
+    from fatektool.protocol.link_kinds import TableKind
     from fatektool.protocol.link_results import Fault
 
 _ARROWS: Final = {1: "<-", 2: "->", 3: "->"}
@@ -52,20 +53,20 @@ def table_document(
         "file": file,
         "kind": kind_of(table).value,
         "ok": not faults,
-        "faults": fault_documents(faults),
+        "faults": fault_documents(kind_of(table), faults),
         "transactions": None if message else _rows(table, faults),
         "message": message,
         "words": [f"{word:04X}" for word in table.to_words()],
     }
 
 
-def fault_documents(faults: Iterable[Fault]) -> list[dict[str, Any]]:
-    """Faults as JSON has them."""
+def fault_documents(kind: TableKind, faults: Iterable[Fault]) -> list[dict[str, Any]]:
+    """Faults of a table of this kind as JSON has them."""
     return [
         {
             "transaction": fault.row,
             "code": None if fault.code is None else f"{fault.code:X}",
-            "meaning": None if fault.code is None else meaning(fault.code),
+            "meaning": None if fault.code is None else meaning(fault.code, [kind]),
             "reason": fault.reason,
         }
         for fault in faults
@@ -104,7 +105,8 @@ def table_lines(table: Table, faults: Sequence[Fault]) -> Iterator[str]:
         yield from _row_lines(table, faults)
     for fault in faults:
         place = "table" if fault.row is None else f"transaction {fault.row}"
-        code = "" if fault.code is None else f" (result {fault.code:X}: {meaning(fault.code)})"
+        said = "" if fault.code is None else meaning(fault.code, [kind_of(table)])
+        code = "" if fault.code is None else f" (result {fault.code:X}: {said})"
         yield f"{place}: {fault.reason}{code}"
     if not faults:
         yield "all within the documented ranges"

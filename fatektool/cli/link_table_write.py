@@ -70,7 +70,7 @@ def write_command(
     folder = None if no_safety_snapshot else require_folder(safety_dir or file.parent)
     words = table.to_words()
     faults = [*place_faults(start, len(words)), *table.faults()]
-    _require_good(file, faults, force=force)
+    _require_good(file, table, faults, force=force)
     safety: str | None = None
     failed: list[NotTaken] = []
     with connection.open(voice, writes=not dry_run) as plc:
@@ -109,7 +109,7 @@ def write_command(
     return PlcError.exit_code if failed else 0
 
 
-def _require_good(file: Path, faults: Sequence[Fault], *, force: bool) -> None:
+def _require_good(file: Path, table: Table, faults: Sequence[Fault], *, force: bool) -> None:
     if not faults or force:
         return
     first = faults[0]
@@ -119,7 +119,7 @@ def _require_good(file: Path, faults: Sequence[Fault], *, force: bool) -> None:
         f"{file}: the table has faults: {place}{first.reason}{more}: nothing was written",
         hint=f"'fatektool link table check {shlex.quote(str(file))}' shows all; --force writes it as it is",
         file=str(file),
-        faults=fault_documents(faults),
+        faults=fault_documents(kind_of(table), faults),
     )
 
 
@@ -172,7 +172,7 @@ def _document(
         "sr": str(start),
         "kind": kind_of(table).value,
         "dry_run": dry_run,
-        "faults": fault_documents(faults),
+        "faults": fault_documents(kind_of(table), faults),
         "changes": [
             {
                 "element": str(change.element),

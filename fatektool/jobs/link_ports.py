@@ -9,9 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from fatektool.errors import PlcError, UsageError
+from fatektool.errors import DataError, PlcError, UsageError
 from fatektool.jobs.registers import named, read_elements
 from fatektool.protocol.elements import Element
+from fatektool.protocol.link_codes import meaning, next_step
+from fatektool.protocol.link_kinds import TableKind, misplaced
 from fatektool.protocol.link_ports import PORTS, Port, decode_port, port_elements
 from fatektool.protocol.link_results import WR_WORDS, InstructionState
 from fatektool.protocol.link_settings import (
@@ -75,38 +77,75 @@ class ResultReport:
     """What WR says, and in MD1 and MD2 what was received.
 
     Attributes:
+        kind: of the instruction; None where it was not named.
         state: WR+0 to WR+7.
+        high_speed: R4058 and R4059, where a running high-speed link has its errors; None for other kinds.
         received_length: WR+8; None where it was not asked for.
         received: the bytes from WR+9 on.
     """
 
+    kind: TableKind | None
     state: InstructionState
+    high_speed: HighSpeedLink | None = None
     received_length: int | None = None
     received: bytes = b""
 
+    @property
+    def meaning(self) -> str:
+        """The result code in words; every reading of it where the kind is not known."""
+        return meaning(self.state.result.code, self._kinds)
 
-def read_result(plc: Plc, start: Element, *, message: bool) -> ResultReport:
+    @property
+    def next_step(self) -> str | None:
+        """What to do about the result code; None where there is nothing to do."""
+        return next_step(self.state.result.code, self._kinds)
+
+    @property
+    def good(self) -> bool:
+        """No error is known: neither in the result code, nor on the high-speed link."""
+        return self.state.result.code == 0 and (self.high_speed is None or self.high_speed.good)
+
+    @property
+    def _kinds(self) -> tuple[TableKind, ...]:
+        return tuple(TableKind) if self.kind is None else (self.kind,)
+
+
+def read_result(plc: Plc, start: Element, kind: TableKind | None = None) -> ResultReport:
     """Read what an instruction says of its last transaction.
 
     Args:
         plc: the PLC.
         start: operand WR.
-        message: True for MD1 and MD2, whose received bytes are read as well.
+        kind: of the instruction. Of MD1 and MD2 the received bytes are read as well, of MD3 R4058 and
+            R4059.
 
     Raises:
-        UsageError: no register.
+        UsageError: no register that can hold a result, or too near the end of such registers.
         PlcError: the PLC refused a register.
+        DataError: the length that WR+8 gives reaches past the registers that can hold it.
         LineError: no answer.
     """
-    require_register(start, "WR")
-    words = read_words(plc, start, WR_WORDS + message)
-    state = InstructionState.parse(words[:WR_WORDS])
+    hint = f"is {start} the instruction's operand WR?"
+    message = kind is not None and kind.is_message
+    reason = misplaced("WR", start, WR_WORDS + message)
+    if reason is not None:
+        raise UsageError(reason, hint=hint, element=str(start))
+    words = read_words(plc, start, WR_WORDS + message, hint)
+    state = InstructionState.parse(words[:WR_WORDS], kind)
+    if kind is TableKind.MD3:
+        log = read_words(plc, Element("R", 4058), 2, "a PLC without them has no high-speed link (MD3)")
+        return ResultReport(kind, state, decode_high_speed({"R4058": log[0], "R4059": log[1]}))
     if not message:
-        return ResultReport(state)
+        return ResultReport(kind, state)
     length = words[WR_WORDS]
     count = min(length, MAX_RECEIVED)
-    data = read_words(plc, start.after(WR_WORDS + 1), count) if count else ()
-    return ResultReport(state, length, bytes(word & 0xFF for word in data))
+    reason = misplaced("WR", start, WR_WORDS + 1 + count)
+    if reason is not None:
+        raise DataError(
+            f"WR+8 says that {length} bytes were received; {reason}", hint=hint, element=str(start)
+        )
+    data = read_words(plc, start.after(WR_WORDS + 1), count, hint) if count else ()
+    return ResultReport(kind, state, None, length, bytes(word & 0xFF for word in data))
 
 
 def require_register(start: Element, operand: str) -> None:
@@ -119,8 +158,14 @@ def require_register(start: Element, operand: str) -> None:
         raise UsageError(f"{operand} {start}: expected a register R or D", element=str(start))
 
 
-def read_words(plc: Plc, start: Element, count: int) -> tuple[int, ...]:
+def read_words(plc: Plc, start: Element, count: int, hint: str | None = None) -> tuple[int, ...]:
     """Read registers that follow each other, all of them.
+
+    Args:
+        plc: the PLC.
+        start: the first.
+        count: how many.
+        hint: what to look at if the PLC refuses some; by default whether the table begins there.
 
     Raises:
         UsageError: they go past the last address there is.
@@ -134,7 +179,7 @@ def read_words(plc: Plc, start: Element, count: int) -> tuple[int, ...]:
         raise PlcError(
             f"{count} registers from {start} were asked for, and the PLC refused {refused}: "
             f"{next(iter(reading.errors.values()))}",
-            hint=f"is {start} where the table begins?",
+            hint=hint or f"is {start} where the table begins?",
             element=str(start),
         )
     return tuple(reading.values[element] for element in elements)

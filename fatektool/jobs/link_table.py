@@ -18,13 +18,14 @@ from fatektool.jobs.selection import Item
 from fatektool.jobs.snapshot import Snapshot, raw_of, take_snapshot
 from fatektool.jobs.snapshot_spec import SpecItem
 from fatektool.protocol.elements import Element
-from fatektool.protocol.link_tables import Table, TableKind, parse_table, table_words
+from fatektool.protocol.link_tables import Table, parse_table, table_words
 from fatektool.protocol.values import ValueType
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from fatektool.client import Plc
+    from fatektool.protocol.link_kinds import TableKind
 
 _READINGS: Final = 3
 

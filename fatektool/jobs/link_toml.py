@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any, Final
 from fatektool.errors import DataError, UsageError
 from fatektool.program.strict_toml import read_toml
 from fatektool.protocol.link_checks import CLINK_COMMANDS, HIGH_SPEED_COMMANDS, MBUS_COMMANDS
+from fatektool.protocol.link_kinds import TableKind
 from fatektool.protocol.link_messages import MessageTable
 from fatektool.protocol.link_operands import (
     CLINK_TYPES,
@@ -38,7 +39,6 @@ from fatektool.protocol.link_tables import (
     HighSpeedTable,
     MbusTable,
     Table,
-    TableKind,
 )
 
 if TYPE_CHECKING:

@@ -71,7 +71,7 @@ class Port:
         rx_timeout_unit_s: 0.01 or 0.1.
         minimum_scans: that a transaction takes: 2 or 3.
         continuous: one edge starts all transactions.
-        last_result: of the last transaction; the PLC keeps it for continuous execution alone.
+        last_result: of the last transaction; the PLC keeps it for continuous execution alone, else None.
     """
 
     number: int
@@ -138,7 +138,8 @@ def decode_port(values: Mapping[str, int], number: int) -> Port:
     r4047, d4043, d4044 = (values.get(name) for name in ("R4047", "D4043", "D4044"))
     times = values.get(own.times)
     unit = timeout_unit_s(d4043 or 0, number)
-    result = [values.get(f"D{own.result + place}") for place in (0, 1)]
+    continuous = None if d4044 is None else is_continuous(d4044, number)
+    result = [values.get(f"D{own.result + place}") for place in (0, 1)] if continuous else [None, None]
     return Port(
         number,
         flag(values, own.free),
@@ -149,7 +150,7 @@ def decode_port(values: Mapping[str, int], number: int) -> Port:
         None if times is None else round((times & 0xFF) * unit, 2),
         None if times is None else unit,
         None if d4044 is None else minimum_scans(d4044, number),
-        None if d4044 is None else is_continuous(d4044, number),
+        continuous,
         None if result[0] is None or result[1] is None else TransactionResult.parse(result[0], result[1]),
     )
 

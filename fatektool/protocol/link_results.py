@@ -8,8 +8,10 @@ FBs link paper, sections 13.1.2 (CLINK, FUN151) and 13.2.2 (M-BUS, FUN150)::
     WR+4    b0 waiting for the port   b4 not the first run   b12 ACT   b13 ERR   b14 DN
     others  the instruction's own
 
-MD1 and MD2 use the high byte of WR+0 alone; WR+8 tells how many bytes they received, WR+9 on the bytes.
-The results of a port in D4045 to D4052 are WR+0 and WR+1 again.
+That is MD0 and M-BUS. MD1 and MD2 have the result code in WR+0, and b0, b12, b13 and b14 of WR+4; WR+8 is
+how many bytes they received, WR+9 on are the bytes. MD3 has the result code alone, in WR+0. The paper does
+not say in which byte: here it is the high one as in all other modes, or the low one where the high one is 0.
+The results of a port in D4045 to D4052 are WR+0 and WR+1 again. What the codes mean: ``link_codes``.
 """
 
 from __future__ import annotations
@@ -17,39 +19,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
+from fatektool.protocol.link_kinds import TableKind
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 WR_WORDS: Final = 8
 """The words that an instruction controls from WR on."""
-
-MEANINGS: Final = {
-    0x0: "the transaction was successful",
-    0x2: "length error: 0 or more than the limit",
-    0x3: "command code error",
-    0x4: "data type error",
-    0x5: "reference number error",
-    0x6: "the data types of master and slave do not go together",
-    0x7: "port error: not port 1 to 4",
-    0x8: "invalid communication table",
-    0xA: "no answer from the station within the time-out",
-    0xB: "communication error: damaged data, or a Modbus exception, came back",
-}
-
-_TABLE: Final = "read the table with 'fatektool link table show': the transaction's row says what is wrong"
-NEXT_STEPS: Final = {
-    0x2: _TABLE,
-    0x3: _TABLE,
-    0x4: _TABLE,
-    0x5: _TABLE,
-    0x6: _TABLE,
-    0x7: "give the instruction a port from 1 to 4 (operand Pt)",
-    0x8: "check that operand SR is where the table begins: SR+0 is A550H, the high byte of SR+1 is 07H",
-    0xA: "check that the station is on, its number and its line parameters, and the wiring; 'fatektool link "
-    "ports' shows the time-out, which must be longer than the slowest station's scan",
-    0xB: "check baud, format and protocol of both ends, cable, shield and termination; of a Modbus slave "
-    "check that it has these references",
-}
+_BITS: Final = (0, 4, 12, 13, 14)
+_MESSAGE_BITS: Final = (0, 12, 13, 14)
+_BITS_OF: Final = {TableKind.MD1: _MESSAGE_BITS, TableKind.MD2: _MESSAGE_BITS, TableKind.MD3: ()}
 
 WIRE_COMMANDS: Final = {
     0x01: "read discrete outputs (0xxxxx)",
@@ -66,11 +45,6 @@ WIRE_COMMANDS: Final = {
     0x46: "read registers",
     0x47: "write registers",
 }
-
-
-def meaning(code: int) -> str:
-    """A result code in words."""
-    return MEANINGS.get(code, "a code that the paper does not list")
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,16 +88,6 @@ class TransactionResult:
         return self.code << 8 | self.transaction, self.station << 8 | self.command
 
     @property
-    def meaning(self) -> str:
-        """The code in words."""
-        return meaning(self.code)
-
-    @property
-    def next_step(self) -> str | None:
-        """What to do about the code; None where there is nothing to do, or nothing known."""
-        return NEXT_STEPS.get(self.code)
-
-    @property
     def command_meaning(self) -> str | None:
         """The command in words; None for a code that is no command."""
         return WIRE_COMMANDS.get(self.command)
@@ -131,7 +95,7 @@ class TransactionResult:
 
 @dataclass(frozen=True, slots=True)
 class Operation:
-    """WR+4: where the instruction stands.
+    """WR+4: where the instruction stands. None for what the mode does not have.
 
     Attributes:
         waiting: another instruction has the port, this one waits for it.
@@ -141,25 +105,31 @@ class Operation:
         done: output DN.
     """
 
-    waiting: bool
-    repeated: bool
-    active: bool
-    error: bool
-    done: bool
+    waiting: bool | None
+    repeated: bool | None
+    active: bool | None
+    error: bool | None
+    done: bool | None
 
     @classmethod
-    def parse(cls, wr4: int) -> Operation:
-        """Take the word apart."""
-        return cls(*(bool(wr4 >> bit & 1) for bit in (0, 4, 12, 13, 14)))
+    def parse(cls, wr4: int, kind: TableKind | None = None) -> Operation:
+        """Take the word apart.
+
+        Args:
+            wr4: the word.
+            kind: of the instruction; None where it is not known, then every bit is shown.
+        """
+        bits = _BITS if kind is None else _BITS_OF.get(kind, _BITS)
+        return cls(*(bool(wr4 >> bit & 1) if bit in bits else None for bit in _BITS))
 
 
 @dataclass(frozen=True, slots=True)
 class InstructionState:
-    """All that WR tells.
+    """All that WR says.
 
     Attributes:
         words: WR+0 to WR+7 as they are.
-        result: of the last transaction.
+        result: of the last transaction. Of MD1 to MD3 only its code holds.
         operation: where the instruction stands.
     """
 
@@ -168,6 +138,14 @@ class InstructionState:
     operation: Operation
 
     @classmethod
-    def parse(cls, words: Sequence[int]) -> InstructionState:
-        """Take WR+0 to WR+7 apart."""
-        return cls(tuple(words), TransactionResult.parse(words[0], words[1]), Operation.parse(words[4]))
+    def parse(cls, words: Sequence[int], kind: TableKind | None = None) -> InstructionState:
+        """Take WR+0 to WR+7 apart.
+
+        Args:
+            words: the eight words.
+            kind: of the instruction; None where it is not known.
+        """
+        result = TransactionResult.parse(words[0], words[1])
+        if kind is TableKind.MD3 and result.code == 0:
+            result = TransactionResult(result.transaction, 0, 0, 0)
+        return cls(tuple(words), result, Operation.parse(words[4], kind))

@@ -47,6 +47,15 @@ ABNORMAL: Final = {
     0x04: "parity error",
     0x08: "CRC error",
 }
+ABNORMAL_STEP: Final = (
+    "mend the station, then write 0 to R4058 and R4059 until they stay 0: R4058 shows one abnormal station "
+    "even if there are more"
+)
+"""The paper's procedure for R4058 and R4059 (section 13.1.2, MD3)."""
+UNWATCHED: Final = (
+    "the master detects only stations that send in its table; one that only receives may be absent"
+)
+"""The limit of R4058 and R4059 (the same section)."""
 DIALLING: Final = {
     1: "does not wait for dial tone or busy tone",
     2: "waits for the dial tone, not for the busy tone",
@@ -96,6 +105,11 @@ class HighSpeedLink:
     abnormal_count: int | None
     timeout: int | None
     parameters: int | None
+
+    @property
+    def good(self) -> bool:
+        """No slave is abnormal, and no abnormal answer was counted since R4059 was cleared."""
+        return not self.abnormal_station and not self.abnormal_code and not self.abnormal_count
 
     @property
     def abnormal(self) -> str | None:

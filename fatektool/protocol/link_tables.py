@@ -15,11 +15,11 @@ lists are kept, so that words -> table -> words is the identity. What is wrong w
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import Enum
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import DataError
 from fatektool.protocol.link_checks import check_clink, check_high_speed, check_mbus
+from fatektool.protocol.link_kinds import TableKind, misplaced
 from fatektool.protocol.link_messages import MAX_MESSAGE, MessageTable
 from fatektool.protocol.link_operands import require_range
 from fatektool.protocol.link_results import Fault
@@ -31,24 +31,7 @@ if TYPE_CHECKING:
     from fatektool.protocol.elements import Element
 
 
-class TableKind(Enum):
-    """Which instruction and mode a table is for."""
-
-    MD0 = "md0"
-    MD1 = "md1"
-    MD2 = "md2"
-    MD3 = "md3"
-    MBUS = "mbus"
-
-    @property
-    def head_words(self) -> int:
-        """How many words it takes to know how long the table is."""
-        return {TableKind.MD0: 1, TableKind.MD3: 1, TableKind.MBUS: 2}.get(self, 3)
-
-
 MBUS_MARK: Final = 0xA550
-SR_AREAS: Final = (("R", 0, 3839), ("R", 5000, 8071), ("D", 0, 3999))
-"""Where operand SR may point: HR, ROR, DR."""
 _NO_ROWS: Final = Fault(None, None, "the table has no transactions")
 
 
@@ -200,14 +183,8 @@ def place_faults(start: Element, count: int) -> list[Fault]:
         start: operand SR.
         count: how many words the table takes.
     """
-    for symbol, first, last in SR_AREAS:
-        if start.symbol == symbol and first <= start.address <= last:
-            end = start.address + count - 1
-            if end <= last:
-                return []
-            return [Fault(None, None, f"SR {start}: {count} words end at {symbol}{end}, past {symbol}{last}")]
-    areas = ", ".join(f"{symbol}{first} to {symbol}{last}" for symbol, first, last in SR_AREAS)
-    return [Fault(None, None, f"SR {start}: expected {areas}")]
+    reason = misplaced("SR", start, count)
+    return [] if reason is None else [Fault(None, None, reason)]
 
 
 def _rows(words: Sequence[int]) -> list[Sequence[int]]:

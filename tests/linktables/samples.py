@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING
 
 from hypothesis import strategies as st
 
+from fatektool.protocol.link_kinds import TableKind
 from fatektool.protocol.link_messages import MessageTable
 from fatektool.protocol.link_operands import Operand
 from fatektool.protocol.link_rows import SharedBlock, Transaction
-from fatektool.protocol.link_tables import ClinkTable, HighSpeedTable, MbusTable, Table, TableKind
+from fatektool.protocol.link_tables import ClinkTable, HighSpeedTable, MbusTable, Table
 
 if TYPE_CHECKING:
     from tests.registers.plant import Plant

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from fatektool.protocol.link_codes import CODES, TRANSACTIONS, meaning, next_step
+from fatektool.protocol.link_kinds import TableKind
 from fatektool.protocol.link_messages import MessageTable
 from fatektool.protocol.link_operands import Operand
-from fatektool.protocol.link_results import MEANINGS, NEXT_STEPS
 from fatektool.protocol.link_rows import SharedBlock, Transaction
 from fatektool.protocol.link_tables import ClinkTable, HighSpeedTable, MbusTable
 
@@ -190,6 +191,35 @@ def test_a_fault_names_its_row() -> None:
     assert fault.reason == "slave R3840: expected R0 to R3839"
 
 
-def test_every_code_has_words_and_every_fault_a_next_step() -> None:
-    assert set(MEANINGS) == {0, 2, 3, 4, 5, 6, 7, 8, 0xA, 0xB}
-    assert set(NEXT_STEPS) == set(MEANINGS) - {0}
+PAPER_CODES = {"md0": "0 2 3 4 5 6 A B", "md1": "0 2 A B", "md2": "0 2 A B", "md3": "0 2 3 4 5",
+               "mbus": "0 2 3 4 5 6 7 8 A B"}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", TableKind)
+def test_each_kind_has_the_codes_that_the_paper_lists(kind: TableKind) -> None:
+    assert [f"{code:X}" for code in CODES[kind]] == PAPER_CODES[kind.value].split()
+    for code, words in CODES[kind].items():
+        assert (words.next_step is None) == (code == 0)
+        assert ("Modbus" in words.meaning) <= (kind is TableKind.MBUS)
+        assert "row" not in (words.next_step or "") or not kind.is_message
+        assert meaning(code, [kind]) == words.meaning
+
+
+def test_a_code_means_what_its_kind_says() -> None:
+    assert meaning(0, [TableKind.MD3]) == "the table's format is correct; this says nothing of the stations"
+    assert "successful" not in meaning(0, [TableKind.MD3])
+    assert "this PLC's own ladder program" in meaning(0xA, [TableKind.MD2])
+    assert "wiring" not in (next_step(0xA, [TableKind.MD2]) or "")
+    assert meaning(3, [TableKind.MD1]) == "a code that the paper does not list"
+    assert next_step(3, [TableKind.MD1]) is None
+
+
+def test_where_the_kind_is_not_known_each_reading_is_given() -> None:
+    assert meaning(0, list(TableKind)) == (
+        "md0, md1, md2, mbus: the transaction was successful; "
+        "md3: the table's format is correct; this says nothing of the stations"
+    )
+    assert meaning(7, list(TableKind)) == "mbus: port error: not port 1 to 4"
+    assert meaning(1, list(TableKind)) == "a code that the paper does not list"
+    assert meaning(0xA, TRANSACTIONS) == "no answer from the station within the time-out"
+    assert next_step(0, list(TableKind)) is None

@@ -11,7 +11,7 @@ import pytest
 from fatektool.errors import DataError
 from fatektool.jobs.link_table import read_table
 from fatektool.protocol.elements import Element
-from fatektool.protocol.link_tables import TableKind
+from fatektool.protocol.link_kinds import TableKind
 from tests.cli.terminal import Terminal
 from tests.registers.plant import Plant, cut_in_write, error_of, is_write, recorded, small, spied
 
@@ -87,7 +87,7 @@ def test_faults_are_shown_with_the_result_that_they_give(fbs: Plant) -> None:
         "0    2        read     R0      <-  R0     65      2",
         "1    2        9        20:0    ?   R3840  1       3",
         "2    255      read     X0      <-  WX4    1       5",
-        "transaction 0: length: expected 1 to 64, got 65 (result 2: length error: 0 or more than the limit)",
+        "transaction 0: length: expected 1 to 64, got 65 (result 2: length error: 0, or more than 64)",
         "transaction 1: command: expected 1 (read), 2 (write), got 9 (result 3: command code error)",
         f"transaction 1: master: type: expected one of {types}, got 20 (result 4: data type error)",
         "transaction 1: slave R3840: expected R0 to R3839 (result 5: reference number error)",

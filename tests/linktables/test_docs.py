@@ -7,7 +7,7 @@ import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fatektool.protocol.link_results import MEANINGS
+from fatektool.protocol.link_codes import CODES
 
 if TYPE_CHECKING:
     from tests.registers.plant import Plant
@@ -37,5 +37,6 @@ def test_every_command_gives_what_is_shown(fbs: Plant, place: Path) -> None:
 
 
 def test_every_code_is_there() -> None:
-    rows = re.findall(r"^\| ([0-9A-F]) \|", DOCS, re.MULTILINE)
-    assert rows == [f"{code:X}" for code in MEANINGS]
+    rows = re.findall(r"^\| ([0-9A-F]) \| ([^|]+) \|", DOCS, re.MULTILINE)
+    documented = [(kind.strip(), code) for code, kinds in rows for kind in kinds.split(",")]
+    assert sorted(documented) == sorted((kind.value, f"{code:X}") for kind in CODES for code in CODES[kind])

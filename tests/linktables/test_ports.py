@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fatektool.protocol.link_kinds import TableKind
 from fatektool.protocol.link_ports import (
     PORT_ELEMENTS,
     decode_port,
@@ -144,8 +145,37 @@ def test_wr() -> None:
     assert state.result == TransactionResult(0xB, 3, 2, 0x10)
     assert state.result.command_meaning == "preset several registers"
     assert state.operation == Operation(waiting=True, repeated=True, active=False, error=True, done=True)
-    assert TransactionResult(1, 0, 0, 0).meaning == "a code that the paper does not list"
-    assert TransactionResult(1, 0, 0, 0).next_step is None
+
+
+@pytest.mark.parametrize(
+    ("kind", "repeated", "outputs"),
+    [
+        (TableKind.MD0, True, True),
+        (TableKind.MBUS, True, True),
+        (TableKind.MD1, None, True),
+        (TableKind.MD2, None, True),
+        (TableKind.MD3, None, None),
+    ],
+)
+def test_wr_has_only_the_outputs_of_its_mode(
+    kind: TableKind, repeated: bool | None, outputs: bool | None
+) -> None:
+    operation = InstructionState.parse([0, 0, 0, 0, 0xFFFF, 0, 0, 0], kind).operation
+    assert operation == Operation(outputs, repeated, outputs, outputs, outputs)
+
+
+def test_the_code_of_md3_in_either_byte() -> None:
+    """The paper does not say which byte of WR+0 holds it."""
+    for wr0, code in ((0, 0), (0x0400, 4), (0x0004, 4), (0x0205, 2)):
+        assert InstructionState.parse([wr0, *[0] * 7], TableKind.MD3).result.code == code
+
+
+def test_the_last_result_is_none_unless_execution_is_continuous() -> None:
+    """D4045 to D4052 hold a result then alone; else whatever was left there."""
+    words = {"D4045": 0x0A01, "D4046": 0x0246}
+    for d4044, kept in ((0x5602, True), (0x5604, False), (0x0002, False), (0x0000, False)):
+        assert (decode_port(words | {"D4044": d4044}, 1).last_result is not None) is kept
+    assert decode_port(words, 1).last_result is None
 
 
 @given(st.integers(0, 0xFFFF), st.integers(0, 0xFFFF))

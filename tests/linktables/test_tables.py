@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from fatektool.errors import DataError, UsageError
 from fatektool.protocol.elements import Element
+from fatektool.protocol.link_kinds import TableKind
 from fatektool.protocol.link_messages import MAX_MESSAGE, MessageTable
 from fatektool.protocol.link_operands import CLINK_TYPES, MBUS_MASTER_TYPES, MBUS_SLAVE_TYPES, Operand
 from fatektool.protocol.link_results import Fault
@@ -17,7 +18,6 @@ from fatektool.protocol.link_rows import SharedBlock, Transaction
 from fatektool.protocol.link_tables import (
     ClinkTable,
     Table,
-    TableKind,
     kind_of,
     parse_table,
     place_faults,
