@@ -4,7 +4,8 @@
 
     FatektoolError                     70  a fault of fatektool itself
     ├── UsageError                      2  a bad option or value, a refused question
-    │   └── LineReadOnly                   a write over a line that may only be read
+    │   ├── LineReadOnly                   a write over a line that may only be read
+    │   └── FileExists                     a file of this name is there, and is kept
     ├── LineError                       3  no or no usable answer, port not there or in use
     │   ├── TransportError                 the medium failed
     │   │   ├── TransportTimeout           nothing came in time (one read, not one exchange)
@@ -74,6 +75,10 @@ class LineReadOnly(UsageError):
             f"{what}: this line is read-only, and nothing was sent",
             hint="to write, leave out --read-only, FATEKTOOL_READ_ONLY and the inventory's read_only",
         )
+
+
+class FileExists(UsageError):
+    """A file of this name is there already, and is kept."""
 
 
 class LineError(FatektoolError):
@@ -160,3 +165,7 @@ class RestoreIncomplete(FatektoolError):
     """The PLC's program is neither the old one nor the new one."""
 
     exit_code = 6
+
+
+class FileWarning(UserWarning):
+    """A file is written and whole, and something about it is not as it ought to be."""

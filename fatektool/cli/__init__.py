@@ -11,12 +11,13 @@ import io
 import os
 import signal
 import sys
-from typing import TYPE_CHECKING, NoReturn
+import warnings
+from typing import TYPE_CHECKING, NoReturn, TextIO
 
 import click
 
 from fatektool.cli.output import print_json, tell
-from fatektool.errors import DataError, FatektoolError, UsageError
+from fatektool.errors import DataError, FatektoolError, FileWarning, UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -38,8 +39,30 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
     sys.exit(code)
 
 
-def run(words: list[str]) -> int:  # noqa: PLR0911  # a way out a class of error
-    """Run one command line; give its exit code. What goes wrong is one line on stderr."""
+def run(words: list[str]) -> int:
+    """Run one command line; give its exit code. What goes wrong is one line on stderr, a warning too."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("default", FileWarning)
+        warnings.showwarning = _show_warning
+        return _run(words)
+
+
+def _show_warning(  # noqa: PLR0917  # the signature of warnings.showwarning
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    file: TextIO | None = None,  # noqa: ARG001
+    line: str | None = None,
+) -> None:
+    """What a user is to know in one line; a developer's warnings as Python shows them."""
+    if issubclass(category, FileWarning):
+        tell(f"warning: {message}")
+    else:
+        tell(warnings.formatwarning(message, category, filename, lineno, line))
+
+
+def _run(words: list[str]) -> int:  # noqa: PLR0911  # a way out a class of error
     signal.signal(signal.SIGTERM, _terminate)
     as_json = "--json" in words
     try:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 import click
 
 from fatektool.cli.options import PATH
-from fatektool.errors import UsageError
+from fatektool.errors import FatektoolError, UsageError
 from fatektool.jobs.alarms import TIME_LIMIT_S, Event, parse_command, run_command
 from fatektool.jobs.prometheus import Sample, exposition, sample, successes
 from fatektool.jobs.times import utc
@@ -63,11 +63,13 @@ class Alarms:
         prometheus: the file for the textfile collector.
         on_change: the command for another program.
         on_failure: the command for what did not end well.
+        lost: why the file could not be written; None if it was.
     """
 
     prometheus: Path | None
     on_change: tuple[str, ...] | None
     on_failure: tuple[str, ...] | None
+    lost: FatektoolError | None = field(init=False, default=None)
     _told: list[tuple[str, Told]] = field(init=False, default_factory=list)
     _hangs: int = field(init=False, default=0)
 
@@ -81,23 +83,26 @@ class Alarms:
             self._run(self.on_failure, "failure", job, told, voice)
 
     def write(self, known: set[str]) -> None:
-        """Write the Prometheus file, whole or not at all.
+        """Write the Prometheus file, whole or not at all; ``lost`` is why, if it cannot be.
+
+        That is no error here: what became of the PLCs is still to be told.
 
         Args:
             known: the PLCs whose successes of former runs are kept.
-
-        Raises:
-            UsageError: the file cannot be written.
-            DataError: the disk is full or broken.
         """
-        if self.prometheus is None:
-            return
+        if self.prometheus is not None:
+            try:
+                self._write(self.prometheus, known)
+            except FatektoolError as error:
+                self.lost = error
+
+    def _write(self, prometheus: Path, known: set[str]) -> None:
         former: dict[tuple[str, str], float] = {}
-        if self.prometheus.exists():
-            text = read_bounded(self.prometheus, _MAX_FILE).decode(errors="replace")
+        if prometheus.is_file():
+            text = read_bounded(prometheus, _MAX_FILE).decode(errors="replace")
             former = {key: when for key, when in successes(text).items() if key[0] in known}
         data = exposition(_samples(self._told, former, time.time())).encode(errors="backslashreplace")
-        write_whole(self.prometheus, data, overwrite=True, mode=_MODE)
+        write_whole(prometheus, data, overwrite=True, mode=_MODE)
 
     def _run(self, command: tuple[str, ...], event: str, job: str, told: Told, voice: Voice) -> None:
         if self._hangs >= _MOST_HANGS:
@@ -144,11 +149,12 @@ def _samples(
         yield sample("fatek_last_success_timestamp_seconds", when, {"plc": name, "job": job})
 
 
-def alarm_options(*, changes: bool) -> Callable[[F], F]:
+def alarm_options(*, changes: bool, place_first: bool = True) -> Callable[[F], F]:
     """The options; the command gets ``alarms``.
 
     Args:
         changes: False for a job that compares nothing, and has no ``--on-change``.
+        place_first: False for a monitoring plugin, which asks the PLC whether its file can be written or not.
     """
 
     def decorated(function: F) -> F:
@@ -179,7 +185,8 @@ def alarm_options(*, changes: bool) -> Callable[[F], F]:
             if prometheus is not None:
                 if prometheus.suffix != ".prom":
                     raise UsageError(f"--prometheus {prometheus}: expected a name that ends in .prom")
-                require_place(prometheus, overwrite=True)
+                if place_first:
+                    require_place(prometheus, overwrite=True)
             return function(*args, alarms=alarms, **rest)
 
         if changes:

@@ -11,7 +11,7 @@ import click
 from fatektool.cli.documents import saved_document
 from fatektool.cli.options import PATH, Connection, connection_options
 from fatektool.cli.output import Voice, table
-from fatektool.errors import UsageError
+from fatektool.errors import FatektoolError, UsageError
 from fatektool.jobs.backup import backup
 from fatektool.jobs.times import stamp, utc
 from fatektool.program.archive import Backup, save_backup
@@ -56,13 +56,14 @@ def backup_command(
         counters = plc.link.counters
     voice.detail(f"line: {counters}")
     warn_of_header(found, voice)
+    if path != STDOUT:
+        save_backup(found, path, overwrite=force)
     if raw is not None:
-        write_whole(raw, found.program.data, overwrite=force)
+        _write_raw(raw, found, path, overwrite=force)
     if path == STDOUT:
         sys.stdout.buffer.write(found.to_bytes())
         sys.stdout.buffer.flush()
         return
-    save_backup(found, path, overwrite=force)
     program = found.program
     size = f"{program.ladder_words} words, {len(program.pages)} pages"
     rows = [
@@ -72,6 +73,16 @@ def backup_command(
         ("sha256", program.sha256),
     ]
     voice.show(saved_document(found, path, duration_s), table(rows))
+
+
+def _write_raw(raw: Path, found: Backup, path: Path, *, overwrite: bool) -> None:
+    """Write the bare pages, behind the backup: what fails here takes nothing from that."""
+    try:
+        write_whole(raw, found.program.data, overwrite=overwrite)
+    except FatektoolError as error:
+        if path != STDOUT:
+            error.message = f"{path} is saved, but the bare pages are not: {error.message}"
+        raise
 
 
 def require_raw_name(raw: Path | None, file: Path) -> None:

@@ -15,9 +15,8 @@ from fatektool.cli.options import PATH, Connection, Seconds, connection_options
 from fatektool.cli.plugin import PluginCommand, check_document, plugin_line
 from fatektool.errors import FatektoolError, UsageError
 from fatektool.inventory.find import EXPECTATIONS
-from fatektool.jobs.check import Checked, check_backup, check_plc, parse_age
+from fatektool.jobs.check import Checked, State, check_backup, check_plc, parse_age
 from fatektool.jobs.progress import Progress, no_progress
-from fatektool.program.archive import load_backup
 from fatektool.transport.limit import Limit
 
 if TYPE_CHECKING:
@@ -70,7 +69,7 @@ class Plan:
     metavar="S",
     help="How long it may take in all.",
 )
-@alarm_options(changes=True)
+@alarm_options(changes=True, place_first=False)
 @connection_options
 def check_command(
     connection: Connection,
@@ -104,7 +103,8 @@ def check_command(
     )
     name = connection.target if entry is None else entry.name
     began = time.monotonic()
-    done = check_one(connection, name, plan, voice, limit=Limit(deadline))
+    found = Checked()
+    done = check_one(connection, name, plan, voice, found, limit=Limit(deadline))
     told = Told(
         name,
         connection.target,
@@ -117,6 +117,9 @@ def check_command(
     )
     alarms.tell("check", told, voice)
     alarms.write({name})
+    if alarms.lost is not None:
+        found.add(State.UNKNOWN, f"figures NOT WRITTEN: {alarms.lost.message}")
+        done = _done(connection, name, plan, found)
     voice.show(done.document, [done.line])
     return done.exit_code
 
@@ -133,22 +136,23 @@ def check_one(
     name: str,
     plan: Plan,
     voice: Voice,
+    found: Checked,
     *,
     limit: Limit,
     progress: Progress = no_progress,
 ) -> CheckDone:
-    """Look at one PLC, and at its backup whether it answers or not."""
-    found = Checked()
+    """Look at one PLC, and at its backup whether it answers or not; ``found`` takes the facts."""
     try:
-        reference = None
-        if plan.reference is not None:
-            reference = (str(plan.reference), load_backup(plan.reference).program)
         with connection.open(voice, limit=limit) as plc:
-            check_plc(plc, found, expect=plan.expect, reference=reference, progress=progress)
+            check_plc(plc, found, expect=plan.expect, reference=plan.reference, progress=progress)
     except FatektoolError as error:
         found.fail(error)
     if plan.backup is not None:
         check_backup(plan.backup, found, max_age_s=plan.max_age_s, now=datetime.now(UTC))
+    return _done(connection, name, plan, found)
+
+
+def _done(connection: Connection, name: str, plan: Plan, found: Checked) -> CheckDone:
     place: dict[str, Any] = {
         "target": connection.target,
         "station": connection.station,

@@ -39,7 +39,7 @@ def fleet_command() -> None:
 def status_command(orders: Orders, alarms: Alarms, voice: Voice, *, brief: bool) -> int:
     """Show how the PLCs are."""
     document, interrupted = run_fleet("status", orders, alarms, voice, status_work(voice, brief=brief))
-    return ended("status", document, voice, interrupted=interrupted)
+    return ended("status", document, voice, alarms, interrupted=interrupted)
 
 
 @fleet_command.command(
@@ -86,7 +86,7 @@ def backup_command(
         document, interrupted = run_fleet("backup", orders, alarms, voice, work)
     if history is not None and remote is not None and not interrupted:
         document["push"] = _push(history, remote, voice)
-    code = ended("backup", document, voice, interrupted=interrupted)
+    code = ended("backup", document, voice, alarms, interrupted=interrupted)
     return code or int("error" in document.get("push", {}))
 
 
@@ -116,7 +116,7 @@ def _push(history: Path, remote: str, voice: Voice) -> dict[str, Any]:
 def verify_command(orders: Orders, alarms: Alarms, voice: Voice) -> int:
     """Compare each PLC's program with its reference, the backup that the inventory names."""
     document, interrupted = run_fleet("verify", orders, alarms, voice, verify_work(voice))
-    return ended("verify", document, voice, interrupted=interrupted)
+    return ended("verify", document, voice, alarms, interrupted=interrupted)
 
 
 @fleet_command.command("snapshot", epilog="Example: fatektool fleet snapshot --dir snapshots --keep 30d")
@@ -129,7 +129,7 @@ def snapshot_command(orders: Orders, alarms: Alarms, voice: Voice, *, folder: Pa
     require_folder(folder)
     kept = None if keep is None else Keep.parse(keep)
     document, interrupted = run_fleet("snapshot", orders, alarms, voice, snapshot_work(voice, folder, kept))
-    return ended("snapshot", document, voice, interrupted=interrupted)
+    return ended("snapshot", document, voice, alarms, interrupted=interrupted)
 
 
 fleet_command.add_command(check_command)

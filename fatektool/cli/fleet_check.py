@@ -16,8 +16,7 @@ from fatektool.cli.fleet_run import Orders, fleet_options, run_fleet
 from fatektool.cli.options import PATH, connection_of
 from fatektool.cli.plugin import PluginCommand, plugin_line
 from fatektool.errors import UsageError
-from fatektool.jobs.check import State, parse_age, worst
-from fatektool.program.files import require_folder
+from fatektool.jobs.check import Checked, State, parse_age, worst
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -39,7 +38,7 @@ _MOST_NAMED = 5
 @click.option("--no-reference", is_flag=True, help="Do not read the programs: a look of a moment each.")
 @click.option("--backups", type=PATH, metavar="DIR", help="Where 'fleet backup' wrote the last good ones.")
 @click.option("--max-age", metavar="AGE", help="How old those may be: 36h, 7d.")
-@alarm_options(changes=True)
+@alarm_options(changes=True, place_first=False)
 @fleet_options
 def check_command(
     orders: Orders,
@@ -57,8 +56,6 @@ def check_command(
     if max_age is not None and backups is None:
         raise UsageError("--max-age goes with --backups DIR")
     age_s = None if max_age is None else parse_age(max_age)
-    if backups is not None:
-        require_folder(backups)
 
     def work(entry: PlcEntry, turn: Turn[Done]) -> Done:
         plan = Plan(
@@ -71,15 +68,24 @@ def check_command(
         if limit is None:  # it has begun: for the type checker
             raise AssertionError
         return check_one(
-            connection_of(entry), entry.name, plan, voice.of(entry.name), limit=limit, progress=turn.progress
+            connection_of(entry),
+            entry.name,
+            plan,
+            voice.of(entry.name),
+            Checked(),
+            limit=limit,
+            progress=turn.progress,
         )
 
     document, interrupted = run_fleet("check", orders, alarms, voice, work, lines=False)
     states = {plc["name"]: _state(plc) for plc in document["plcs"]}
     found = worst(states.values())
-    if interrupted:
+    if interrupted or alarms.lost is not None:
         found = worst((found, State.UNKNOWN))
-    voice.show(document | {"state": found.name}, _lines(document, states, found, voice))
+    lost = [] if alarms.lost is None else [f"figures NOT WRITTEN: {alarms.lost.message}"]
+    voice.show(document | {"state": found.name}, _lines(document, states, found, lost, voice))
+    for words in lost:  # in the plugin's line as well, but not in the document
+        voice.warn(words)
     return int(found)
 
 
@@ -88,7 +94,9 @@ def _state(plc: dict[str, Any]) -> State:
     return State(code) if code in set(State) else State.UNKNOWN
 
 
-def _lines(document: dict[str, Any], states: dict[str, State], found: State, voice: Voice) -> Iterator[str]:
+def _lines(
+    document: dict[str, Any], states: dict[str, State], found: State, lost: list[str], voice: Voice
+) -> Iterator[str]:
     counts = Counter(states.values())
     parts = []
     for state in (State.CRITICAL, State.WARNING, State.UNKNOWN):
@@ -96,7 +104,7 @@ def _lines(document: dict[str, Any], states: dict[str, State], found: State, voi
         if names:
             more = f" and {len(names) - _MOST_NAMED} more" if len(names) > _MOST_NAMED else ""
             parts.append(f"{len(names)} {state.name}: {', '.join(names[:_MOST_NAMED])}{more}")
-    words = "; ".join([f"{counts[State.OK]} of {len(states)} PLCs well", *parts])
+    words = "; ".join([f"{counts[State.OK]} of {len(states)} PLCs well", *parts, *lost])
     figures = {state.name.lower(): str(counts[state]) for state in State}
     yield plugin_line(found, words, figures | {"duration": f"{document['duration_s']}s;;;0"})
     for plc in document["plcs"]:

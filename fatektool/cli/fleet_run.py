@@ -190,8 +190,8 @@ def run_fleet(
     return document | {"time": time_, "duration_s": round(time.monotonic() - began, 3)}, interrupted
 
 
-def ended(job: str, document: dict[str, Any], voice: Voice, *, interrupted: bool) -> int:
-    """Print the document, say how it went, and give the exit code: 0 all well, 1 some not."""
+def ended(job: str, document: dict[str, Any], voice: Voice, alarms: Alarms, *, interrupted: bool) -> int:
+    """Print the document, say how it went, and give the exit code: 0 all well, 1 some not, or the worst."""
     voice.show(document, ())
     summary = document["summary"]
     slowest = document["slowest"][:1]
@@ -205,10 +205,12 @@ def ended(job: str, document: dict[str, Any], voice: Voice, *, interrupted: bool
     words.append(f"{document['duration_s']:.1f} s")
     words += [f"slowest {each['name']} {each['duration_s']:.1f} s" for each in slowest]
     voice.say(", ".join(words))
-    if interrupted:
-        from fatektool.cli import failed
+    from fatektool.cli import failed
 
+    if interrupted:
         return failed(Interrupted("interrupted"), as_json=False)
+    if alarms.lost is not None:
+        return failed(alarms.lost, as_json=False)
     return 1 if summary["failed"] else 0
 
 

@@ -20,7 +20,7 @@ from fatektool.jobs.snapshot import load_snapshot
 from fatektool.jobs.snapshot_apply import ApplyPlan, apply_plan, plan_apply
 from fatektool.jobs.snapshot_formats import as_json
 from fatektool.jobs.times import stamp
-from fatektool.program.files import free_name, require_folder, write_whole
+from fatektool.program.files import require_folder, write_new
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -134,9 +134,7 @@ def _warn(plan: ApplyPlan, voice: Voice) -> None:
 def _save_safety(present: Snapshot, file: Path, folder: Path) -> Path:
     start = os.fsencode(file.stem)[:150].decode(errors="ignore")  # 255 bytes is all that a name may have
     stem = f"{start}.safety-st{present.station:02}-{stamp(present.time)}"
-    path = free_name(folder, stem, "json")
-    write_whole(path, as_json(present).encode(), overwrite=False)
-    return path
+    return write_new(folder, stem, "json", as_json(present).encode())
 
 
 def _plan_lines(plan: ApplyPlan, snapshot: Snapshot, file: Path) -> Iterator[str]:

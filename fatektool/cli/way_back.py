@@ -10,7 +10,7 @@ from click.core import ParameterSource
 
 from fatektool.jobs.snapshot_formats import as_json
 from fatektool.jobs.times import stamp
-from fatektool.program.files import free_name, write_whole
+from fatektool.program.files import write_new
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -31,9 +31,8 @@ def save_safety(present: Snapshot, name: str, folder: Path) -> Path:
         UsageError: the folder cannot be written.
         DataError: the disk is full or broken.
     """
-    path = free_name(folder, f"{name}.safety-st{present.station:02}-{stamp(present.time)}", "json")
-    write_whole(path, as_json(present).encode(), overwrite=False)
-    return path
+    stem = f"{name}.safety-st{present.station:02}-{stamp(present.time)}"
+    return write_new(folder, stem, "json", as_json(present).encode())
 
 
 def same_again(connection: Connection, command: str) -> str:

@@ -9,12 +9,14 @@ ladder checksum        CRITICAL    that of the PLC's own status
 watchdog               CRITICAL    the same
 battery                WARNING     the same
 emergency stop         WARNING     the same: somebody pressed it, the PLC itself is well
-program                CRITICAL    word for word that of the reference; UNKNOWN if it cannot be read
+program                CRITICAL    word for word that of the reference; UNKNOWN if either cannot be read
 backup                 CRITICAL    the last one can be read, and has a program in it
 its age                WARNING     not above the limit, not of the future
 =====================  ==========  ==============================================================
 
-States are those of monitoring plugins (Monitoring Plugins Development Guidelines, section 2.3).
+States are those of monitoring plugins (Monitoring Plugins Development Guidelines, section 2.3). UNKNOWN is
+the weakest of the bad ones: what could not be looked at hides nothing of what was found. So the PLC is asked
+first, and the reference is opened afterwards.
 """
 
 from __future__ import annotations
@@ -111,7 +113,7 @@ def check_plc(
     found: Checked,
     *,
     expect: str,
-    reference: tuple[str, Program] | None,
+    reference: Path | None,
     progress: Progress = no_progress,
 ) -> None:
     """Look at a PLC.
@@ -120,7 +122,7 @@ def check_plc(
         plc: the PLC.
         found: takes the facts.
         expect: ``run``, ``stop`` or ``any``.
-        reference: a name and the program that ought to be in it; None for none.
+        reference: the backup whose program ought to be in it; None for none.
         progress: told of each page.
 
     Raises:
@@ -147,8 +149,14 @@ def check_plc(
         found.add(State.WARNING, "emergency stop ACTIVE")
     for label in ("running", "battery_low"):
         found.figures[label] = str(int(getattr(flags, label)))
-    if reference is not None:
-        _compare(plc, found, *reference, progress)
+    if reference is None:
+        return
+    try:
+        program = load_backup(reference).program
+    except (DataError, UsageError) as error:
+        found.add(State.UNKNOWN, f"program NOT COMPARED: {error.message}")
+        return
+    _compare(plc, found, str(reference), program, progress)
 
 
 def _compare(plc: Plc, found: Checked, name: str, program: Program, progress: Progress) -> None:

@@ -10,12 +10,12 @@ from whose pages and FILE's all present pages come, and kept as the way back.
 from __future__ import annotations
 
 import os
-from itertools import count
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import FatektoolError
 from fatektool.jobs.times import stamp
-from fatektool.program.archive import load_backup, save_backup
+from fatektool.program.archive import load_backup
+from fatektool.program.files import write_new
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -39,12 +39,7 @@ def save_safety_backup(backup: Backup, file: Path, folder: Path) -> Path:
         DataError: the disk is full or broken.
     """
     stem = f"{_stem(file)}.safety-st{backup.source.station:02}-{stamp(backup.created)}"
-    for number in count(1):
-        path = folder / (f"{stem}.json" if number == 1 else f"{stem}-{number}.json")
-        if not path.exists():
-            save_backup(backup, path)
-            return path
-    raise AssertionError  # pragma: no cover  # count() has no end
+    return write_new(folder, stem, "json", backup.to_bytes())
 
 
 def find_way_back(present: Program, wanted: Program, station: int, file: Path, folder: Path) -> Path | None:

@@ -9,18 +9,21 @@ from __future__ import annotations
 
 import os
 import re
+import warnings
+from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
-from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from fatektool.errors import UsageError
+from fatektool.errors import FatektoolError, FileWarning, UsageError
 from fatektool.jobs.times import stamp
-from fatektool.program.files import file_error, require_folder, require_place, write_whole
+from fatektool.program.files import file_error, require_folder, require_place, sync, write_new, write_whole
 from fatektool.transport.lock import PortLock
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from fatektool.jobs.snapshot import Snapshot
 
 _KEEP: Final = re.compile(r"([1-9][0-9]{0,8})(d?)", re.ASCII)
@@ -78,25 +81,28 @@ def save_dated(
     Raises:
         UsageError: the folder cannot be written.
         DataError: the disk is full or broken.
+
+    Warns:
+        FileWarning: it is written, and old ones could not be dropped.
     """
     require_folder(folder)
     stem = f"snapshot-st{snapshot.station:02}-{stamp(snapshot.time)}"
-    data = encoded(text)
-    path = folder / f"{stem}.{suffix}"
-    for number in count(2):
-        try:
-            write_whole(path, data, overwrite=False)
-            break
-        except UsageError:
-            if not os.path.lexists(path):
-                raise
-        path = folder / f"{stem}-{number}.{suffix}"  # there is one of this second already
+    path = write_new(folder, stem, suffix, encoded(text))
     if keep is not None:
-        try:
+        with _dropping(folder):
             _drop_files(folder, snapshot.station, suffix, keep, now or datetime.now(UTC))
-        except OSError as error:
-            raise file_error("drop old snapshots in", folder, error) from error
     return path
+
+
+@contextmanager
+def _dropping(path: Path) -> Iterator[None]:
+    """What fails here fails behind the snapshot, which is written: a warning."""
+    try:
+        yield
+    except (OSError, FatektoolError) as error:
+        why = error if isinstance(error, FatektoolError) else error.strerror or error
+        message = f"the snapshot is written, but old ones in {path} are not dropped: {why}"
+        warnings.warn(message, FileWarning, stacklevel=3)
 
 
 def encoded(text: str) -> bytes:
@@ -135,6 +141,9 @@ def append_line(
         UsageError: the file cannot be written, or holds something else.
         DataError: the disk is full or broken; the file is as it was.
         PortBusy: another process holds the file for long.
+
+    Warns:
+        FileWarning: the line is written, and old ones could not be dropped.
     """
     real = require_lines(path, keep)
     lock = PortLock(str(real), wait_s)
@@ -143,7 +152,8 @@ def append_line(
         require_lines(path, keep)
         _append(real, line.encode())
         if keep is not None:
-            _drop_lines(real, keep, now or datetime.now(UTC))
+            with _dropping(path):
+                _drop_lines(real, keep, now or datetime.now(UTC))
     except OSError as error:
         raise file_error("append to", path, error) from error
     finally:
@@ -196,7 +206,7 @@ def _append(path: Path, data: bytes) -> None:
             written = file.write(data)
             if written != len(data):
                 file.write(data[written:])  # says what the matter is
-            os.fsync(file.fileno())
+            sync(file.fileno(), path)
         except OSError:  # a full disk: take the half line back
             file.truncate(size)
             raise

@@ -7,6 +7,9 @@ The order of a commit, and what a crash leaves::
     3. link it to FILE (new) or rename it (replace)  FILE is whole
     4. fsync the folder                              FILE survives a power cut
 
+From step 3 on the file is there, and nothing takes that back: a folder that cannot be synced (a network
+share, a folder that may be written and not read) is a ``FileWarning``, no error.
+
 A symlink is followed: the file that it names is replaced, not the link. Files are made with the user's
 umask and never wider than 0640 unless asked for, as a program is somebody's property.
 """
@@ -17,11 +20,16 @@ import contextlib
 import errno
 import os
 import secrets
+import warnings
 from pathlib import Path
+from typing import Final
 
-from fatektool.errors import DataError, FatektoolError, UsageError
+from fatektool.errors import DataError, FatektoolError, FileExists, FileWarning, UsageError
 
 _MODE = 0o640
+_NO_SYNC: Final = {errno.EINVAL, errno.ENOTSUP, errno.ENOSYS, errno.EBADF, errno.EPERM, errno.ENOTTY}
+"""What file systems answer that cannot sync, network shares above all. A failing disk is another matter."""
+_MOST_NAMES: Final = 10_000
 
 
 def require_place(path: Path, *, overwrite: bool) -> Path:
@@ -73,8 +81,12 @@ def write_whole(path: Path, data: bytes, *, overwrite: bool, mode: int = _MODE) 
         mode: its rights, less the user's umask; another for what is nobody's secret.
 
     Raises:
-        UsageError: it exists and ``overwrite`` is False, or its folder cannot be written.
+        FileExists: it exists and ``overwrite`` is False.
+        UsageError: its folder cannot be written.
         DataError: the disk is full or broken; the file is as it was.
+
+    Warns:
+        FileWarning: it is there, and may not survive a power cut.
     """
     real = require_place(path, overwrite=overwrite)
     temporary = real.parent / f".fatektool-{secrets.token_hex(6)}.tmp"
@@ -111,9 +123,26 @@ def read_bounded(path: Path, limit: int) -> bytes:
     return data
 
 
-def exists_already(path: Path) -> UsageError:
+def write_new(folder: Path, stem: str, suffix: str, data: bytes) -> Path:
+    """Write a file under a name that no file has yet: ``stem.suffix``, else ``stem-2.suffix`` and so on.
+
+    Raises:
+        UsageError: the folder cannot be written, or all names are taken.
+        DataError: the disk is full or broken; nothing was written.
+    """
+    for number in range(1, _MOST_NAMES + 1):
+        path = folder / (f"{stem}.{suffix}" if number == 1 else f"{stem}-{number}.{suffix}")
+        with contextlib.suppress(FileExists):
+            write_whole(path, data, overwrite=False)
+            return path
+    raise UsageError(
+        f"{folder} has {_MOST_NAMES} files of the name {stem}", hint="move them away", file=str(folder)
+    )
+
+
+def exists_already(path: Path) -> FileExists:
     """The refusal to replace a file."""
-    return UsageError(
+    return FileExists(
         f"{path} exists already and is kept", hint="choose another name, or --force", file=str(path)
     )
 
@@ -127,7 +156,7 @@ def file_error(what: str, path: Path, error: OSError | ValueError) -> FatektoolE
     message = f"cannot {what} {path}: {reason}"
     number = getattr(error, "errno", None)
     if number in {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}:
-        return DataError(message, hint="make room and run it again; nothing was changed", file=str(path))
+        return DataError(message, hint="make room and run it again; the file is as it was", file=str(path))
     if number == errno.EIO:
         return DataError(message, hint="check the disk", file=str(path))
     return UsageError(message, hint="check the name and its rights", file=str(path))
@@ -143,7 +172,24 @@ def write_synced(path: Path, data: bytes, mode: int = _MODE) -> None:
     with os.fdopen(os.open(path, flags, mode), "wb") as file:
         file.write(data)
         file.flush()
-        os.fsync(file.fileno())
+        sync(file.fileno(), path)
+
+
+def sync(descriptor: int, path: Path) -> None:
+    """See to it that what was written to a file survives a power cut, where the file system can do that.
+
+    Raises:
+        OSError: the disk is full or broken.
+
+    Warns:
+        FileWarning: the file system cannot sync.
+    """
+    try:
+        os.fsync(descriptor)
+    except OSError as error:
+        if error.errno not in _NO_SYNC:
+            raise
+        _warn_of_sync(f"what is written in {path.parent}", error)
 
 
 def _put_new(temporary: Path, real: Path) -> None:
@@ -159,28 +205,28 @@ def _put_new(temporary: Path, real: Path) -> None:
 
 
 def sync_folder(folder: Path) -> None:
-    """See to it that the names in a folder survive a power cut.
+    """See to it that the names in a folder survive a power cut; the files are there, whatever comes of it.
 
-    Raises:
-        OSError: the disk fails.
+    Warns:
+        FileWarning: the folder cannot be synced.
     """
     if os.name == "nt":  # a folder cannot be opened there
         return
-    descriptor = os.open(folder, os.O_RDONLY)
     try:
-        os.fsync(descriptor)
+        descriptor = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
     except OSError as error:
-        if error.errno not in {errno.EINVAL, errno.ENOTSUP}:  # file systems that cannot
-            raise
-    finally:
-        os.close(descriptor)
+        if error.errno not in {errno.EINVAL, errno.ENOTSUP}:  # file systems without a sync of folders
+            _warn_of_sync(f"a new name in folder {folder}", error)
 
 
-def free_name(folder: Path, stem: str, suffix: str) -> Path:
-    """A name in a folder that no file has yet: ``stem.suffix``, else ``stem-2.suffix`` and so on."""
-    path = folder / f"{stem}.{suffix}"
-    number = 1
-    while path.exists():
-        number += 1
-        path = folder / f"{stem}-{number}.{suffix}"
-    return path
+def _warn_of_sync(what: str, error: OSError) -> None:
+    warnings.warn(
+        f"{what} may not survive a power cut, as it cannot be synced: {error.strerror or error}; "
+        f"the files themselves are whole",
+        FileWarning,
+        stacklevel=3,
+    )

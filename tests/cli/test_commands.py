@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from jsonschema import Draft202012Validator
 
+from fatektool.errors import DataError
 from fatektool.program.archive import load_backup
 from fatektool.simulator.build import build_simulation
 from tests.program.samples import header, program
@@ -25,6 +26,19 @@ def test_a_backup_without_a_name_is_named_by_station_and_time(place: Path, cli: 
     (path,) = place.glob("*.json")
     assert re.fullmatch(r"fatek-st07-\d{8}T\d{6}Z\.json", path.name)
     assert load_backup(path).source.station == 7
+
+
+def test_bare_pages_that_cannot_be_written_cost_no_backup(
+    press: Press, cli: Cli, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(path: Path, data: bytes, **_: object) -> None:
+        raise DataError(f"cannot write {path}: No space left on device ({len(data)} bytes)")
+
+    monkeypatch.setattr("fatektool.cli.backup.write_whole", full)
+    done = cli("backup", "x.json", "--raw", "x.bin", "-p", press.target)
+    assert done.code == 5
+    assert "x.json is saved, but the bare pages are not: cannot write x.bin: No space" in done.err
+    assert cli("verify", "x.json", "-p", press.target).code == 0
 
 
 def test_force_replaces_file_and_raw(press: Press, cli: Cli) -> None:

@@ -21,6 +21,8 @@ from tests.program.samples import backup, changed
 from .gateway import deaf_door, plcs_of
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from tests.cli.house import Cli
 
     from .gateway import Hall
@@ -107,6 +109,68 @@ def test_the_program(cli: Cli, plant: Hall) -> None:
     code, words, _ = plugin(cli, "-p", "press", "--reference", "other.json")
     assert code == 3
     assert "refused to read program page 0" in words
+
+
+def missing(path: Path) -> str:
+    return f"cannot read {path}: No such file"
+
+
+def damaged(path: Path) -> str:
+    path.write_text('{"schema": "fatektool.backup/1"')
+    return str(path)
+
+
+def denied(path: Path) -> str:
+    path.mkdir()
+    return f"cannot read {path}"
+
+
+@pytest.mark.parametrize("spoil", [missing, damaged, denied])
+def test_a_reference_that_is_none_hides_nothing(cli: Cli, plant: Hall, spoil: Callable[[Path], str]) -> None:
+    """The PLC is asked first, and what it says, or does not say, outweighs what could not be compared."""
+    said = spoil(Path("gone.json"))
+    plant.write(press='reference = "gone.json"\nexpect = "run"\n')
+    plant.press.running = True
+    code, words, figures = plugin(cli, "-p", "press")
+    assert (code, figures["running"]) == (3, "1")
+    assert f"program NOT COMPARED: {said}" in words
+    plant.press.battery_low = True
+    code, words, _ = plugin(cli, "-p", "press")
+    assert code == 1
+    assert words.startswith("press: battery LOW, program NOT COMPARED")
+    plant.press.running = False
+    assert plugin(cli, "-p", "press")[0] == 2
+    assert cli("fleet", "check", "--select", "press").code == 2
+    with deaf_door() as target:
+        plant.write(deaf=f'target = "{target}"\nreference = "gone.json"\n')
+        code, words, _ = plugin(cli, "-p", "deaf")
+        assert (code, "no answer from station 1" in words) == (2, True)
+        assert cli("fleet", "check", "--select", "deaf").code == 2
+
+
+@pytest.mark.parametrize("file", ["no/folder/x.prom", "folder.prom"])
+def test_figures_that_cannot_be_written_hide_nothing(cli: Cli, plant: Hall, file: str) -> None:
+    Path("folder.prom").mkdir()
+    plant.write(press='expect = "run"\n')
+    code, words, _ = plugin(cli, "-p", "press", "--prometheus", file)
+    assert (code, words.startswith("press: in STOP, expected RUN")) == (2, True)
+    plant.press.running = True
+    code, words, _ = plugin(cli, "-p", "press", "--prometheus", file)
+    assert (code, "figures NOT WRITTEN: " in words) == (3, True)
+    document = cli("check", "-p", "press", "--prometheus", file, "--json").document("check")
+    assert document["state"] == "UNKNOWN"
+    fleet = cli("fleet", "check", "--prometheus", file)
+    assert (fleet.code, fleet.out.count("figures NOT WRITTEN: ")) == (3, 1)
+    plant.press.running = False
+    fleet = cli("fleet", "check", "--prometheus", file)
+    assert (fleet.code, fleet.out.count("figures NOT WRITTEN: ")) == (2, 1)
+
+
+def test_a_folder_of_backups_that_is_gone_is_critical(cli: Cli, plant: Hall) -> None:
+    plant.press.running = True
+    done = cli("fleet", "check", "--backups", "gone", "--select", "press")
+    assert done.code == 2
+    assert "press: NO GOOD BACKUP: cannot read gone/press.json" in done.out
 
 
 def test_a_battery_outweighs_a_program_that_cannot_be_compared(cli: Cli, plant: Hall) -> None:
@@ -274,9 +338,7 @@ def test_fleet_check_with_backups_and_references(cli: Cli, plant: Hall) -> None:
     assert "NO GOOD BACKUP: cannot read backups/pump.json" in found["pump"]["words"]
 
 
-@pytest.mark.parametrize(
-    "words", ["--select x", "--nope", "--max-age 1h", "--backups no", "--inventory no.toml"]
-)
+@pytest.mark.parametrize("words", ["--select x", "--nope", "--max-age 1h", "--inventory no.toml"])
 def test_fleet_check_has_its_own_code_space_too(cli: Cli, plant: Hall, words: str) -> None:
     assert plant.targets
     done = cli("fleet", "check", *words.split())

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from fatektool.errors import DataError, FatektoolError, UsageError
-from fatektool.program.files import read_bounded, require_folder, require_place, write_whole
+from fatektool.errors import DataError, FatektoolError, FileWarning, UsageError
+from fatektool.program.files import read_bounded, require_folder, require_place, write_new, write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -144,7 +144,7 @@ def test_a_read_only_folder_by_what_the_system_says(tmp_path: Path, monkeypatch:
     ],
     ids=["full", "quota", "broken", "read-only", "ctrl-c"],
 )
-@pytest.mark.parametrize("step", ["open", "fsync", "link", "replace", "fsync of the folder"])
+@pytest.mark.parametrize("step", ["open", "fsync", "link", "replace"])
 def test_whatever_fails_the_file_is_old_or_new(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -168,6 +168,56 @@ def test_whatever_fails_the_file_is_old_or_new(
     if failed and step in {"open", "fsync"}:
         assert after == (OLD if overwrite else None)
     assert names(tmp_path) in ([], ["file"])
+
+
+FOLDER_CANNOT = [
+    errno.ENOSYS, errno.EBADF, errno.EPERM, errno.EACCES, errno.EROFS, errno.ENOTTY, errno.EIO, errno.ENOSPC
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("overwrite", [False, True])
+@pytest.mark.parametrize("number", FOLDER_CANNOT, ids=errno.errorcode.__getitem__)
+def test_a_folder_that_cannot_be_synced(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int, *, overwrite: bool
+) -> None:
+    """The file has its name by then, and is told of as written."""
+    path = tmp_path / "file"
+    if overwrite:
+        path.write_bytes(OLD)
+    failed = fail_at(monkeypatch, "fsync of the folder", OSError(number, os.strerror(number)))
+    with pytest.warns(FileWarning, match=f"folder {tmp_path} may not survive a power cut"):
+        write_whole(path, NEW, overwrite=overwrite)
+    assert failed
+    assert path.read_bytes() == NEW
+    assert names(tmp_path) == ["file"]
+
+
+def test_ctrl_c_while_a_folder_is_synced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    fail_at(monkeypatch, "fsync of the folder", KeyboardInterrupt())
+    with pytest.raises(KeyboardInterrupt):
+        write_whole(tmp_path / "file", NEW, overwrite=False)
+    assert names(tmp_path) == ["file"]
+
+
+@pytest.mark.parametrize("number", [errno.ENOSYS, errno.EINVAL], ids=errno.errorcode.__getitem__)
+def test_a_file_system_that_cannot_sync(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int) -> None:
+    fail_at(monkeypatch, "fsync", OSError(number, os.strerror(number)))
+    with pytest.warns(FileWarning, match=f"{tmp_path} may not survive a power cut"):
+        write_whole(tmp_path / "file", NEW, overwrite=False)
+    assert (tmp_path / "file").read_bytes() == NEW
+
+
+def test_a_name_that_is_free(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The next one that is free; and where all are taken, or none can be had, there is an end."""
+    written = [write_new(tmp_path, "a", "json", NEW).name for _ in range(3)]
+    assert written == ["a.json", "a-2.json", "a-3.json"]
+    monkeypatch.setattr("fatektool.program.files._MOST_NAMES", 3)
+    with pytest.raises(UsageError, match="has 3 files of the name a; move them away"):
+        write_new(tmp_path, "a", "json", NEW)
+    failed = fail_at(monkeypatch, "open", OSError(errno.EACCES, "Permission denied"))
+    with pytest.raises(UsageError, match="Permission denied"):
+        write_new(tmp_path, "b", "json", NEW)
+    assert failed == ["open"], "it was tried again"
 
 
 def fail_at(monkeypatch: pytest.MonkeyPatch, step: str, error: BaseException) -> list[str]:

@@ -9,6 +9,7 @@ import os
 import stat
 import subprocess
 import sys
+import tempfile
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -26,6 +27,8 @@ from tests.cli.house import check, process, started
 from .plant import error_of, recorded, snapshot_of
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from fatektool.jobs.snapshot import Snapshot
 
     from .plant import Plant
@@ -335,3 +338,68 @@ def test_killed_while_appending(place: Path) -> None:
         assert replace(load_snapshot(path), time=TAKEN.time) == TAKEN
         append_line(path, as_ndjson(TAKEN), Keep.parse("20"))
         assert [part["schema"] for part in lines(path)][-1] == "fatektool.snapshot/1"
+
+
+# --- folders that may be written and not listed, and disks that cannot sync ---------------------------------
+
+as_root = pytest.mark.skipif(
+    not hasattr(os, "geteuid") or os.geteuid() != 0, reason="only root can be two users"
+)
+AS_NOBODY = """
+import contextlib, io, os, sys
+from fatektool.cli import main, run
+words = sys.argv[2:]
+with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+    run([word.replace(sys.argv[1], ".") for word in words])  # loads all: others may not read this Python
+os.setgroups([]); os.setgid(65534); os.setuid(65534)
+main(words)
+"""
+
+
+def as_nobody(folder: Path, *words: object) -> subprocess.CompletedProcess[str]:
+    """Run a command as another user, after a try in the present folder instead of this one."""
+    return subprocess.run(
+        [sys.executable, "-c", AS_NOBODY, str(folder), *map(str, words)],
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+@pytest.fixture
+def unlisted() -> Iterator[Path]:
+    """A folder of another user, into which files may be put and which may not be listed: mode 733."""
+    with tempfile.TemporaryDirectory() as name:
+        Path(name).chmod(0o711)
+        folder = Path(name) / "in"
+        folder.mkdir()
+        folder.chmod(0o733)
+        yield folder
+
+
+@pytest.mark.usefixtures("place")
+@as_root
+def test_a_folder_that_may_not_be_listed(unlisted: Path) -> None:
+    """One file, told of as written."""
+    done = as_nobody(unlisted, "snapshot", "R0:3", "-p", "sim:", "-o", f"{unlisted}/")
+    assert done.returncode == 0, done.stderr
+    assert f"warning: a new name in folder {unlisted} may not survive a power cut" in done.stderr
+    (file,) = unlisted.iterdir()
+    assert load_snapshot(file, print).values.keys() == {"R0", "R1", "R2"}
+    done = as_nobody(unlisted, "backup", unlisted / "x.json", "-p", "sim:")
+    assert done.returncode == 0, done.stderr
+    assert done.stderr.startswith("warning: a new name in folder")
+    assert "saved" in done.stdout
+    done = as_nobody(unlisted, "check", "-p", "sim:", "--expect", "any", "--prometheus", unlisted / "x.prom")
+    assert (done.returncode, done.stdout[:8]) == (0, "FATEK OK")
+    assert (unlisted / "x.prom").exists()
+
+
+@pytest.mark.usefixtures("place")
+@as_root
+def test_old_snapshots_that_cannot_be_dropped(unlisted: Path) -> None:
+    done = as_nobody(unlisted, "snapshot", "R0:3", "-p", "sim:", "-o", f"{unlisted}/", "--keep", "1")
+    assert done.returncode == 0, done.stderr
+    assert f"warning: the snapshot is written, but old ones in {unlisted} are not dropped" in done.stderr
+    assert len(list(unlisted.iterdir())) == 1

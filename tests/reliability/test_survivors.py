@@ -266,9 +266,9 @@ def test_an_error_of_a_file_names_the_file_for_scripts_and_people(name: str, tmp
 @pytest.mark.parametrize(
     ("number", "kind", "hint"),
     [
-        (errno.ENOSPC, DataError, "make room and run it again; nothing was changed"),
-        (errno.EDQUOT, DataError, "make room and run it again; nothing was changed"),
-        (errno.EFBIG, DataError, "make room and run it again; nothing was changed"),
+        (errno.ENOSPC, DataError, "make room and run it again; the file is as it was"),
+        (errno.EDQUOT, DataError, "make room and run it again; the file is as it was"),
+        (errno.EFBIG, DataError, "make room and run it again; the file is as it was"),
         (errno.EIO, DataError, "check the disk"),
         (errno.EACCES, UsageError, "check the name and its rights"),
     ],
