@@ -110,7 +110,7 @@ def test_the_inventory_to_copy() -> None:
     spec = found.plcs["press"].spec
     assert spec is not None
     assert spec.exists()
-    documented = tomllib.loads(data.decode())["plc"]
+    documented = tomllib.loads(data.decode().replace("# reference = ", "reference = "))["plc"]
     assert {key for table in documented.values() for key in table} >= {
         "target",
         "spec",
@@ -157,14 +157,16 @@ def test_systemd(cli: Cli, plant: Hall, place: Path, monkeypatch: pytest.MonkeyP
     assert (program, service["Type"]) == ("/usr/local/bin/fatektool", "oneshot")
     assert "/run/lock" in service["ReadWritePaths"]
     name, _, path = service["Environment"].partition("=")
-    (place / service["StateDirectory"]).mkdir()
+    for folder in service["StateDirectory"].split():
+        (place / folder).mkdir()
     plant.write(oven='tags = ["night"]\n')
     monkeypatch.setenv(name, words_of(path, place))
     for _ in range(2):
         done = cli(*words)
         assert (done.code, done.out, done.err) == (0, "", "")
-    kept = {path.name for path in (place / "fatektool").iterdir()}
-    assert kept == {"press.json", "oven.json", "history"}
+    kept = {path.name for path in (place / "fatektool" / "backups").iterdir()}
+    assert kept == {"press.json", "oven.json"}
+    assert (place / "fatektool" / "history" / "HEAD").exists()
     assert (place / "fatek-backup.prom").exists()  # where the node exporter of Debian looks
     timer = unit("fatektool-fleet.timer")
     assert timer["Timer"]["OnCalendar"]
