@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from contextlib import ExitStack
 from math import inf
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
 from fatektool.client import Plc
 from fatektool.errors import PlcError, PlcRefused, UsageError
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from fatektool.transport.lock import PortLock
 
 CODECS: Mapping[str, Codec] = Codecs()
+_LAST_STATION: Final = 254
 
 
 def _to_nobody(_: object) -> None:
@@ -125,7 +126,7 @@ def connect(
         target: ``/dev/ttyUSB0``, ``COM3``, a pyserial URL, ``tcp://host[:500]``, ``udp://host[:500]``,
             ``sim:`` or ``sim:FILE``, ``modem:/dev/ttyUSB0?number=0228082192`` (which calls). M-series over
             TCP has no usual port: it must be named.
-        station: 1 to 254.
+        station: 1 to 254; over ``modbus-tcp`` 0 and 255 too, the PLC at the address itself.
         protocol: ``facon``, ``mseries``, ``modbus-rtu``, ``modbus-ascii`` or ``modbus-tcp``.
         baud: speed of the serial line; over TCP and UDP that of the line behind a gateway.
         format: data bits, parity, stop bits; by default 7E1, and 8E1 for ``mseries`` and
@@ -308,7 +309,7 @@ def _open(
         stack.callback(lock.release)
     kept = state is not None and state.exists()  # the PLCs in a file have stations of their own
     simulation = build_simulation(
-        None if kept else [station],
+        None if kept else [station if 1 <= station <= _LAST_STATION else 1],
         protocol=protocol,
         state=state,
         baud=line.baud,  # of the clock's time, which costs none: a test of so many seconds has an end

@@ -125,7 +125,9 @@ class Link:
                     closed = failure if isinstance(failure, TransportClosed) else error
                     raise self.silence(request, closed) from error
             try:
-                if self.echoes is None and self.codec.echo_may_pass(request):
+                if self.echoes is None and (
+                    self.codec.echo_may_pass(request) or self._may_be_for_all(request)
+                ):
                     self.learn_echo()
                 return self.try_once(request)
             except (TransportError, FrameError) as error:
@@ -179,6 +181,13 @@ class Link:
         """
         if self.read_only and request.writes:
             raise LineReadOnly(f"{request.command.words} ({request.command:02X})")
+
+    def _may_be_for_all(self, request: Request[Any]) -> bool:
+        """True for a write to unit 0: a gateway would hand it to every PLC behind it, and none would answer.
+
+        What answers a read under this number is one PLC.
+        """
+        return request.writes and self.station == 0
 
     # --- one try ----------------------------------------------------------------------------------
 

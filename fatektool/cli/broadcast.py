@@ -25,7 +25,6 @@ def broadcast_option(function: F) -> F:
     return click.option(
         "--broadcast",
         is_flag=True,
-        is_eager=True,  # the station is read by it
         help="With -s 0: to every PLC on the line. None answers: sent, not proven.",
     )(function)
 

@@ -127,7 +127,7 @@ def _rows(entries: list[PlcEntry]) -> Iterator[str]:
 @click.argument("name")
 @click.option("--from", "scan", type=PATH, metavar="FILE|-", help="What 'scan --json' found: each station.")
 @click.option("-p", "--port", "target", metavar="TARGET", help="Where the PLC is.")
-@click.option("-s", "--station", type=click.IntRange(1, 254), help="Its station.  [default: 1]")
+@click.option("-s", "--station", type=click.IntRange(0, 255), help="Its station.  [default: 1]")
 @click.option("--protocol", type=click.Choice(PROTOCOLS), help="What it speaks.")
 @click.option("--baud", type=int, help="Speed of the serial line.")
 @click.option("--format", "line_format", metavar="7E1", help="Data bits, parity, stop bits.")

@@ -13,6 +13,7 @@ from click.core import ParameterSource
 from fatektool.cli.file_path import FilePath
 from fatektool.cli.inventory_file import complete_target, inventory_option, plc_named
 from fatektool.cli.output import Voice
+from fatektool.cli.station import Station, require_station
 from fatektool.errors import LineReadOnly, UsageError
 
 if TYPE_CHECKING:
@@ -37,19 +38,6 @@ class Seconds(click.FloatRange):
         if isnan(seconds):
             self.fail(f"{value!r} is no number of seconds", param, ctx)
         return seconds
-
-
-class Station(click.IntRange):
-    """1 to 254; 0, every PLC on the line, where ``--broadcast`` is given."""
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Read the number. ``--broadcast`` is eager, so that it is known by now."""
-        broadcast = None if ctx is None else ctx.params.get("broadcast")
-        if str(value).strip() != "0" or broadcast is None:
-            return super().convert(value, param, ctx)
-        if not broadcast:
-            self.fail("0 is every PLC on the line, and none answers: add --broadcast if that is meant")
-        return 0
 
 
 class Several(click.ParamType):  # type: ignore[type-arg]  # a generic in the newest click only
@@ -284,6 +272,7 @@ def connection_options_but_format(function: F) -> F:
         entry = plc_named(port, inventory)
         if entry is not None:
             line = _of_inventory(line, entry, has_format=line_format is not None)
+        require_station(line.station, line.protocol, broadcast=rest.get("broadcast"))
         return function(*args, connection=line, **rest)
 
     return with_connection  # type: ignore[return-value]  # as above

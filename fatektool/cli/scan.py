@@ -33,9 +33,12 @@ class Stations(click.ParamType):  # type: ignore[type-arg]  # a generic in the n
         for part in str(value).split(","):
             first, dash, last = part.strip().partition("-")
             ends = [first, last if dash else first]
-            if not all(end.isascii() and end.isdigit() and 1 <= int(end[:4]) <= 254 for end in ends):
+            if not all(end.isascii() and end.isdigit() and 0 <= int(end[:4]) <= 255 for end in ends):
                 self.fail(
-                    f"{part.strip()!r}: expected stations from 1 to 254, such as 1-254 or 1,5,7-9", param, ctx
+                    f"{part.strip()!r}: expected stations from 1 to 254, such as 1-254 or 1,5,7-9; "
+                    "over modbus-tcp 0 and 255 too",
+                    param,
+                    ctx,
                 )
             if int(ends[0]) > int(ends[1]):
                 self.fail(f"{part.strip()!r}: expected the lower station first", param, ctx)

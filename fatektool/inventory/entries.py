@@ -16,6 +16,7 @@ from fatektool.errors import DataError, UsageError
 from fatektool.inventory.find import EXPECTATIONS
 from fatektool.inventory.lines import key_lines, line_of
 from fatektool.program.strict_toml import read_toml
+from fatektool.protocol.codec import require_station
 from fatektool.transport.base import LineSettings
 from fatektool.transport.target import Target, TargetKind
 
@@ -36,7 +37,7 @@ class PlcEntry:
     Attributes:
         name: what it is called.
         target: as for ``connect``; a path in it is relative to the present folder, or absolute.
-        station: 1 to 254.
+        station: 1 to 254; over ``modbus-tcp`` 0 and 255 too.
         protocol: what it speaks.
         baud: speed of the serial line.
         format: data bits, parity, stop bits; None for the protocol's own.
@@ -184,6 +185,11 @@ class _Reader:
             except UsageError as error:
                 self._fault(f"{name}: {error}", "plc", name, "target")
                 return
+            try:
+                require_station(CODECS[protocol], values.get("station", 1))
+            except UsageError as error:
+                self._fault(f"{name}: {error}", "plc", name, "station")
+                return
             form = values.get("format")
             if form is None:
                 values["format"] = usual_format(protocol)
@@ -294,7 +300,7 @@ def _format(value: object, folder: Path) -> str:
 _PROTOCOLS: Final = tuple(CODECS)
 _CHECKS: Final[dict[str, tuple[str, Callable[[object, Path], Any]]]] = {
     "target": ("a text such as tcp://192.168.2.3 or /dev/ttyUSB0", _target),
-    "station": ("a whole number of 1 to 254", _whole(1, 254)),
+    "station": ("a whole number of 1 to 254, with modbus-tcp 0 or 255 too", _whole(0, 255)),
     "protocol": (f"one of {', '.join(_PROTOCOLS)}", _one_of(_PROTOCOLS)),
     "baud": ("a whole number of 50 to 4000000", _whole(50, 4_000_000)),
     "format": ("a text such as 7E1", _format),

@@ -42,7 +42,7 @@ class Station:
     """A station that answered.
 
     Attributes:
-        station: 1 to 254.
+        station: as it answered.
         setting: at which it did.
         brief: its brief status; None if it refused to tell, or was not asked.
         latency_s: how long it took; None if its answer came late.
@@ -90,7 +90,7 @@ def scan(
     Args:
         transport: the medium; its speed is set anew for each setting.
         settings: which to try, the likeliest first.
-        stations: 1 to 254 each.
+        stations: 0 to 255 each; one that a setting's protocol does not have is not asked there.
         timeout_s: a PLC's time to answer, beside wire time.
         retries: further probes where something was heard that is no frame.
         most: end when so many were found; None for all.
@@ -100,17 +100,18 @@ def scan(
     Raises:
         LineError: the medium is gone, or does not take a setting.
     """
-    if not settings or not stations or not all(1 <= station <= 254 for station in stations):
-        raise UsageError("scan: expected settings, and stations from 1 to 254")
+    if not settings or not stations:
+        raise UsageError("scan: expected settings, and stations such as 1 to 254")
     for setting in settings:
-        require_station(setting.codec, min(stations))
+        if not any(station in setting.codec.stations for station in stations):
+            require_station(setting.codec, min(stations))
     result = ScanResult()
     began = transport.clock()
     scanner = _Scanner(transport, settings[0], timeout_s, retries=retries, result=result, on_found=on_found)
-    total = sum(station <= setting.codec.last_station for setting in settings for station in stations)
+    total = sum(station in setting.codec.stations for setting in settings for station in stations)
     try:
         for setting, station in _order(settings, stations, result):
-            if station > setting.codec.last_station:
+            if station not in setting.codec.stations:
                 continue
             scanner.probe(setting, station)
             result.probes += 1
@@ -238,7 +239,7 @@ class _Scanner:
         """True for an answer; an echo of the request is none."""
         codec, brief = setting.codec, None
         probe = codec.probe
-        if not 1 <= frame.station <= codec.last_station:  # nobody can have it
+        if not frame.station and 0 not in codec.stations:  # a broadcast: nobody answers under it
             return False
         if frame.command != codec.code(probe) or frame.raw == codec.encode(frame.station, probe):
             return False

@@ -236,7 +236,7 @@ def _is_value(value: object) -> bool:
 _CHECKS: Final[dict[str, Callable[[Any], bool]]] = {
     "time": lambda value: isinstance(value, str) and _TIME.fullmatch(value) is not None,
     "target": lambda value: isinstance(value, str),
-    "station": lambda value: type(value) is int and 1 <= value <= 254,
+    "station": lambda value: type(value) is int and 0 <= value <= 255,
     "protocol": lambda value: isinstance(value, str),
     "running": lambda value: value is None or isinstance(value, bool),
     "duration_s": lambda value: _finite(value) and value >= 0,

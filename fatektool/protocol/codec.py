@@ -89,8 +89,8 @@ class Codec(Protocol):
         """The port of TCP and UDP unless one is named; None if no paper says one."""
 
     @property
-    def last_station(self) -> int:
-        """The largest station that a PLC can have."""
+    def stations(self) -> range:
+        """The stations that one PLC can be asked under."""
 
     @property
     def numbers(self) -> int:
@@ -194,13 +194,13 @@ _ANOTHER_WAY: Final = "save the program with the vendor's software; 'fatektool s
 
 
 def require_station(codec: Codec, station: int) -> None:
-    """Check that a PLC can have this station, before anything is opened or sent.
+    """Check that one PLC can be asked under this station, before anything is opened or sent.
 
     Raises:
         UsageError: it cannot.
     """
-    if not 1 <= station <= codec.last_station:
+    if station not in codec.stations:
         raise UsageError(
-            f"station: expected 1 to {codec.last_station}, got {station}",
+            f"station: expected {codec.stations[0]} to {codec.stations[-1]}, got {station}",
             hint="0 is broadcast: no PLC answers it" if not station else f"{codec.name} has no others",
         )

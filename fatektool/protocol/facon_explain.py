@@ -22,7 +22,10 @@ if TYPE_CHECKING:
     from fatektool.protocol.commands import Request
 
 _SAYS_LITTLE: Final = "data that no paper describes"
-_STATIONS: Final = {0x00: "all (broadcast), nobody answers", 0xFF: "255, which no PLC can have"}
+_STATIONS: Final = {
+    0x00: "all (broadcast), nobody answers",
+    0xFF: "255, any PLC, or an Ethernet module",
+}
 _PIECE: Final = 1 << 15
 """What a decoder is fed at once: it keeps no more than 64 KiB, and a record of a trace may hold more."""
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 class FatekCommands:
     """The part of a ``Codec`` that does not depend on how a frame is written."""
 
-    last_station: Final = 0xFE
+    stations: Final = range(1, 255)
     numbers: Final = 1
     quiet_chars: Final = 0.0
     probe: Final[Request[Any]] = ReadBriefStatus()

@@ -42,6 +42,7 @@ class Framing:
         size: length of a frame around a PDU of so many bytes.
         data_bits: that a serial line needs; None if it is not spoken there.
         tcp_port: unless one is named.
+        stations: that one PLC can be asked under.
         numbers: how many requests can be told apart by the number that their answers repeat.
         quiet_chars: the silence in characters before a frame.
     """
@@ -52,6 +53,7 @@ class Framing:
     size: Callable[[int], int]
     data_bits: int | None
     tcp_port: int | None = None
+    stations: range = range(1, 1 + modbus_frame.LAST_STATION)
     numbers: int = 1
     quiet_chars: float = 0.0
 
@@ -70,7 +72,6 @@ class ModbusCodec:
 
     commands: Final[frozenset[Command]] = modbus_data.COMMANDS
     loopback_alphabet: Final[bytes] = b""
-    last_station: Final[int] = modbus_frame.LAST_STATION
 
     def mapped(self, modbus_map: ModbusMap) -> ModbusCodec:
         """The same over another map."""
@@ -90,6 +91,11 @@ class ModbusCodec:
     def default_tcp_port(self) -> int | None:
         """502 for TCP."""
         return self.framing.tcp_port
+
+    @property
+    def stations(self) -> range:
+        """1 to 247; over TCP 0 to 255, of which 0 and 255 are the PLC at the address itself."""
+        return self.framing.stations
 
     @property
     def numbers(self) -> int:
@@ -120,8 +126,8 @@ class ModbusCodec:
 
     def encode(self, station: int, request: Request[A], number: int = 0) -> bytes:
         """The request as one frame for this station."""
-        if not 0 <= station <= self.last_station:
-            raise UsageError(f"station: expected 0 to {self.last_station}, got {station}")
+        if station and station not in self.stations:
+            raise UsageError(f"station: expected 0 to {self.stations[-1]}, got {station}")
         return self.framing.encode(station, modbus_data.request_pdu(request, self.map), number)
 
     def parse_request(self, frame: Frame) -> Request[object]:
@@ -219,6 +225,7 @@ TCP: Final = ModbusCodec(
         lambda size: size + modbus_frame.TCP_HEADER,
         data_bits=None,
         tcp_port=502,
+        stations=range(256),
         numbers=1 << 16,
     )
 )

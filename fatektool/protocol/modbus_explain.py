@@ -105,7 +105,7 @@ class _Explainer:
         refused = ", refused" if function & EXCEPTION else ""
         at = self.head
         for part in (
-            _Part("station", 1, _station(frame.station)),
+            _Part("station", 1, self.who(frame.station)),
             _Part("function", 1, f"{words}{refused}"),
             *parts,
         ):
@@ -114,6 +114,12 @@ class _Explainer:
                 yield Field(part.name, frame.raw[at:end], part.meaning)
             at = end
         yield from self.behind(frame.raw)
+
+    def who(self, station: int) -> str:
+        """A station in words."""
+        if not station:
+            return "all (broadcast), nobody answers"
+        return f"{station}" if station <= LAST_STATION else f"{station}, reserved on serial lines"
 
     def before(self, raw: bytes) -> Iterator[Field]:
         """The fields before the station."""
@@ -165,6 +171,10 @@ class TcpExplainer(_Explainer):
     head = TCP_HEADER - 1
     decoder = TcpDecoder
 
+    def who(self, station: int) -> str:
+        """A unit in words: 0 and 255 are the device at the address itself, unless a gateway is there."""
+        return f"{station}, the PLC at this address" if station in {0, 255} else f"{station}"
+
     def before(self, raw: bytes) -> Iterator[Field]:
         """The header up to the station."""
         yield Field("number", raw[:2], f"{int.from_bytes(raw[:2], 'big')}; the answer repeats it")
@@ -186,12 +196,6 @@ def _understood(pdu: bytes, role: Role, *, asked: bool) -> tuple[Role, Pdu | Non
         return role, None, fault
     first = Role.ANSWER if asked and Role.ANSWER in found else next(iter(found))
     return first, found[first], None
-
-
-def _station(station: int) -> str:
-    if not station:
-        return "all (broadcast), nobody answers"
-    return f"{station}" if station <= LAST_STATION else f"{station}, which no PLC can have"
 
 
 def _request_parts(said: Pdu) -> list[_Part]:

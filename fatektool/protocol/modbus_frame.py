@@ -162,7 +162,7 @@ class TcpDecoder(_ByLength):
 
     def _sizes(self, buffer: bytearray, at: int) -> tuple[int, ...] | None:
         head = buffer[at : at + TCP_HEADER]
-        if any(head[2:4]) or (len(head) > 6 and head[6] > LAST_STATION):
+        if any(head[2:4]):
             return ()
         if len(head) < TCP_HEADER:
             return () if head[4:5] > b"\0" else None

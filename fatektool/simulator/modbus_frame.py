@@ -47,6 +47,10 @@ class Framing(Protocol):
     def delimiters(self) -> tuple[bytes, ...]:
         """What begins and ends a frame."""
 
+    @property
+    def own_units(self) -> frozenset[int]:
+        """The stations that mean the PLC at the address itself."""
+
     def feed(self, data: bytes) -> list[Cut]:
         """Requests that ``data`` completes, their checksums right."""
 
@@ -77,6 +81,7 @@ class RtuFraming:
     """RTU."""
 
     delimiters = (b"\x01\x03", b"\x01\x83", b"\x00")
+    own_units: frozenset[int] = frozenset()
 
     def __init__(self) -> None:
         self._begun = b""
@@ -148,6 +153,7 @@ class AsciiFraming:
     """ASCII."""
 
     delimiters = (b":", b"\r\n")
+    own_units: frozenset[int] = frozenset()
 
     def __init__(self) -> None:
         self._begun = b""
@@ -193,6 +199,7 @@ class TcpFraming:
     """TCP. What is no header is skipped byte by byte, up to one."""
 
     delimiters = (b"\x00\x01\x00\x00\x00", b"\x00")
+    own_units = frozenset({0, 255})
 
     def __init__(self) -> None:
         self._begun = b""
@@ -217,8 +224,8 @@ class TcpFraming:
         return found
 
     def sealed(self, body: bytes, request: bytes) -> bytes:
-        """The request's transaction, length, body."""
-        return request[:2] + b"\0\0" + len(body).to_bytes(2, "big") + body
+        """The request's transaction, length, the station as it was asked, and what else is in the body."""
+        return request[:2] + b"\0\0" + len(body).to_bytes(2, "big") + request[6:7] + body[1:]
 
     def readdressed(self, frame: bytes, station: int) -> bytes:
         """Another station."""

@@ -16,7 +16,9 @@ cannot be. They are looked for in this order of what can be wrong: function, for
 R3968 is at that moment.
 
 Silent: a wrong checksum, a station that is not here. A broadcast (station 0) is executed by every PLC, and
-answered by none. R4047 chooses the protocol of a real PLC's ports; here it is the command line.
+answered by none. Over TCP there is none: units 0 and 255 are the PLC at the address itself, the first one,
+which executes and answers. Many clients send nothing else than 0. R4047 chooses the protocol of a real PLC's
+ports; here it is the command line.
 """
 
 from __future__ import annotations
@@ -60,11 +62,12 @@ class ModbusSlave:
 
     def cut(self, data: bytes) -> list[Request]:
         """Take bytes, whatever the chunking; give the requests that they complete."""
+        own = self._framing.own_units
         return [
             Request(
                 found.end,
                 found.raw,
-                found.body[0],
+                next(iter(self.plcs), 1) if found.body[0] in own else found.body[0],
                 found.body[1:2],
                 found.body[2:],
                 RequestKind.WRITE if found.body[1:2] in _WRITES else RequestKind.OTHER,

@@ -86,7 +86,11 @@ def test_paths_are_relative_to_the_file(target: str, found: str) -> None:
 FAULTS = [
     ('[plc.p]\ntarget = "sim:"\nstatoin = 3', "line 3: plc.p: unknown key 'statoin': did you mean station?"),
     ('[plc.p]\ntarget = "sim:"\nx = 3', "line 3: plc.p: unknown key 'x': expected one of baud, expect"),
-    ('[plc.p]\ntarget = "sim:"\nstation = 0', "line 3: plc.p: station: expected a whole number of 1 .*got 0"),
+    ('[plc.p]\ntarget = "sim:"\nstation = 0', "line 3: p: station: expected 1 to 254, got 0; 0 is broadc"),
+    (
+        '[plc.p]\ntarget = "tcp://h"\nprotocol = "modbus-tcp"\nstation = 256',
+        "line 4: plc.p: station: expected a whole number of 1 .*got 256",
+    ),
     ('[plc.p]\ntarget = "sim:"\nstation = true', "line 3: .*got True"),
     ('[plc.p]\ntarget = "sim:"\ntimeout_s = nan', "line 3: plc.p: timeout_s: expected seconds, 0.001"),
     ('[plc.p]\ntarget = "sim:"\ntimeout_s = true', "line 3: .*got True"),

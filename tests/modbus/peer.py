@@ -45,7 +45,13 @@ class Peer:
 
 
 def linked(
-    peer: Peer, codec: Codec = RTU, *, retries: int = 3, timeout_s: float = 0.5, serial: bool = False
+    peer: Peer,
+    codec: Codec = RTU,
+    *,
+    station: int = 1,
+    retries: int = 3,
+    timeout_s: float = 0.5,
+    serial: bool = False,
 ) -> Link:
     """A link to the peer; its fences begin with the shortest."""
     numbers = itertools.count()
@@ -55,7 +61,7 @@ def linked(
     return Link(
         transport,
         codec,
-        1,
+        station,
         LINE,
         timeout_s=timeout_s,
         retries=retries,

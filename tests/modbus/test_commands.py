@@ -110,7 +110,8 @@ def test_a_scan_finds_who_answers(line: Line) -> None:
     stations = [row["station"] for row in document["found"]]
     assert set(stations) <= {1, 247}  # a dropped answer is nobody's
     assert stations
-    assert document["probes"] == 4
+    tcp = document["found"][0]["protocol"] == "modbus-tcp"  # which has units up to 255
+    assert document["probes"] == (7 if tcp else 4)
     assert {(row["running"], row["model"]) for row in document["found"]} == {(None, None)}
 
 

@@ -253,10 +253,18 @@ def test_the_buffer_is_bounded_and_keeps_the_newest(spoken: Spoken) -> None:
 
 
 @each_framing
-@pytest.mark.parametrize("station", [-1, 248, 255])
-def test_stations(spoken: Spoken, station: int) -> None:
+def test_stations(spoken: Spoken) -> None:
+    """A serial line has 1 to 247; over TCP a unit is any byte."""
     request = EXCHANGES[2].request
+    last = 255 if spoken.codec.name == "modbus-tcp" else 247
     assert spoken.codec.encode(0, request)
-    assert spoken.codec.encode(247, request)
-    with pytest.raises(UsageError, match=f"station: expected 0 to 247, got {station}"):
-        spoken.codec.encode(station, request)
+    assert spoken.codec.encode(last, request)
+    for station in (-1, last + 1):
+        with pytest.raises(UsageError, match=f"station: expected 0 to {last}, got {station}"):
+            spoken.codec.encode(station, request)
+
+
+@pytest.mark.parametrize("unit", [0, 248, 255])
+def test_frames_of_every_unit_are_found_over_tcp(unit: int) -> None:
+    answer = bytes.fromhex(f"0007 0000 0005 {unit:02X} 03 02 1234")
+    assert [(frame.station, frame.number) for frame in frames([answer], TCP)] == [(unit, 7)]

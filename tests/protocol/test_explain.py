@@ -328,7 +328,7 @@ def test_broadcast() -> None:
 def test_station_255() -> None:
     explanation = one(framed(b"FF40"))
     assert explanation.station == 255
-    assert explanation.fields[1].meaning == "255, which no PLC can have"
+    assert explanation.fields[1].meaning == "255, any PLC, or an Ethernet module"
 
 
 # --- what is wrong --------------------------------------------------------------------------------

@@ -198,7 +198,7 @@ def test_stations() -> None:
     (everyone,) = explained(query("00 41 00"))
     assert everyone.fields[3].meaning == "all (broadcast), nobody answers"
     (nobody,) = explained(query("FF 40"))
-    assert nobody.fields[3].meaning == "255, which no PLC can have"
+    assert nobody.fields[3].meaning == "255, any PLC, or an Ethernet module"
 
 
 payloads = st.builds(
