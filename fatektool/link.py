@@ -125,9 +125,7 @@ class Link:
                     closed = failure if isinstance(failure, TransportClosed) else error
                     raise self.silence(request, closed) from error
             try:
-                if self.echoes is None and (
-                    self.codec.echo_may_pass(request) or self._may_be_for_all(request)
-                ):
+                if self.echoes is None and self._needs_a_read_before(request):
                     self.learn_echo()
                 return self.try_once(request)
             except (TransportError, FrameError) as error:
@@ -182,12 +180,13 @@ class Link:
         if self.read_only and request.writes:
             raise LineReadOnly(f"{request.command.words} ({request.command:02X})")
 
-    def _may_be_for_all(self, request: Request[Any]) -> bool:
-        """True for a write to unit 0: a gateway would hand it to every PLC behind it, and none would answer.
+    def _needs_a_read_before(self, request: Request[Any]) -> bool:
+        """True where nothing is known of this line yet, and this request could be misunderstood.
 
-        What answers a read under this number is one PLC.
+        The echo of some could pass for the answer. And a write to unit 0 is handed by a gateway to every PLC
+        behind it, none of which answers: what answers a read there is one PLC.
         """
-        return request.writes and self.station == 0
+        return self.codec.echo_may_pass(request) or (request.writes and self.station == 0)
 
     # --- one try ----------------------------------------------------------------------------------
 
