@@ -1,0 +1,1 @@
+"""The ladder program in the vendor's mnemonics: words <-> instructions <-> networks. No I/O."""

@@ -1,0 +1,127 @@
+"""Words -> instructions, and back. Total: whatever the words are, each comes out in one instruction.
+
+What is not known, and what is cut short by the end of the code, stands for itself. How many words an
+unknown function has is not known either, so reading goes on at the next word that begins a network. Words
+of registers can look like one (D200 is 9041, ORG Y144): a beginning counts if something can follow it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from fatektool.ladder.addresses import DRAWING, LAST_BIT, OUTPUTS
+from fatektool.ladder.forms import Shape
+from fatektool.ladder.instruction import Instruction, unknown
+from fatektool.ladder.operands import value_of
+from fatektool.ladder.table import FORMS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from fatektool.ladder.forms import Form
+
+_LD: Final = 0x60
+
+
+def _index(head_words: int) -> list[tuple[tuple[int, ...], dict[tuple[int, ...], Form]]]:
+    """The forms with heads of so many words, by which bits are fixed and what these are."""
+    found: dict[tuple[int, ...], dict[tuple[int, ...], Form]] = {}
+    for form in FORMS:
+        if form.head_words == head_words:
+            mask = tuple(0xFFFF ^ free for free in form.free)
+            found.setdefault(mask, {})[form.fixed] = form
+    return list(found.items())
+
+
+_ONE: Final = [(mask, {fixed[0]: form for fixed, form in forms.items()}) for (mask,), forms in _index(1)]
+_TWO: Final = _index(2)
+
+
+def decode(words: Sequence[int]) -> tuple[Instruction, ...]:
+    """Read code.
+
+    Args:
+        words: 0 to 65535 each, from the beginning of a unit to its end.
+
+    Returns:
+        The instructions; their words in order are the words.
+    """
+    found = []
+    place = 0
+    while place < len(words):
+        instruction = _instruction(words, place) or _unknown(words, place)
+        found.append(instruction)
+        place += len(instruction.words)
+    return tuple(found)
+
+
+def encode(instructions: Iterable[Instruction]) -> tuple[int, ...]:
+    """The words of instructions."""
+    return tuple(word for instruction in instructions for word in instruction.words)
+
+
+def form_at(words: Sequence[int], place: int) -> Form | None:
+    """The row whose head stands here; None if there is none."""
+    first = words[place]
+    for mask, forms in _ONE:
+        form = forms.get(first & mask)
+        if form is not None:
+            return form
+    if place + 1 < len(words):
+        pair = first, words[place + 1]
+        for masks, two in _TWO:
+            form = two.get((pair[0] & masks[0], pair[1] & masks[1]))
+            if form is not None:
+                return form
+    return None
+
+
+def _instruction(words: Sequence[int], place: int) -> Instruction | None:
+    """The instruction that begins here; None if no form is known, or the code ends before it does."""
+    form = form_at(words, place)
+    if form is None or place + form.head_words + form.operand_words > len(words):
+        return None
+    free = tuple(words[place + number] & bits for number, bits in enumerate(form.free))
+    place += form.head_words
+    values = []
+    for part in form.parts:
+        values.append(value_of(words[place : place + part.words]))
+        place += part.words
+    instruction = Instruction(form, free, tuple(values))
+    return instruction if _has_an_address(instruction) else None
+
+
+def _has_an_address(instruction: Instruction) -> bool:
+    """False for a contact of an address that is none: the last one, or an output of a function without LD."""
+    bit = instruction.bit
+    if bit is None or bit not in {LAST_BIT, *OUTPUTS}:
+        return True
+    return bit in OUTPUTS and instruction.form.fixed == (_LD,)
+
+
+def _unknown(words: Sequence[int], place: int) -> Instruction:
+    """What is not known, with what may belong to it."""
+    form = form_at(words, place)
+    if form is not None:  # an address that is none, or cut short
+        contact = form.shape is Shape.CONTACT
+        return unknown(tuple(words[place : place + form.head_words] if contact else words[place:]))
+    if words[place] & 0xF0 < 0xE0 or words[place] == 0x00E0:  # an op that none has, an edge of nothing
+        return unknown((words[place],))
+    end = place + 1
+    while end < len(words) and not _begins(words, end):
+        end += 1
+    return unknown(tuple(words[place:end]))
+
+
+def _begins(words: Sequence[int], place: int) -> bool:
+    """True if a network can begin here: with a word that begins one, and something that can follow it."""
+    first = _instruction(words, place)
+    if first is None or not first.form.begins:
+        return False
+    if first.form.shape is not Shape.CONTACT or first.bit in DRAWING:
+        return True
+    behind = place + len(first.words)
+    if behind == len(words):
+        return True
+    second = _instruction(words, behind)
+    return second is not None and not second.form.begins and second.bit not in OUTPUTS

@@ -1,0 +1,102 @@
+"""Instructions in networks, networks in units: what a program's code says.
+
+A program has a main unit and a sub unit, each a row of networks; numbers run through both, from 0. A network
+begins with a contact that begins a line (ORG, ORGF), a label, or a step (STP, FROM, STPEND); the first of a
+unit with whatever stands there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from fatektool.ladder.decode import decode
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from fatektool.ladder.instruction import Instruction
+
+
+@dataclass(frozen=True)
+class Network:
+    """A network.
+
+    Attributes:
+        number: from 0, through the whole program.
+        first: the number of its first instruction, from 0, through the whole program.
+        word: the place of its first word in the code, from 0, the end mark between two units not counted.
+        unit: 0 for the main unit, 1 for the sub unit.
+        instructions: what it is made of.
+    """
+
+    number: int
+    first: int
+    word: int
+    unit: int
+    instructions: tuple[Instruction, ...]
+
+    @property
+    def name(self) -> str:
+        """``N0000``."""
+        return f"N{self.number:04}"
+
+    @cached_property
+    def words(self) -> tuple[int, ...]:
+        """Its words in order."""
+        return sum((instruction.words for instruction in self.instructions), ())
+
+    @property
+    def places(self) -> Iterator[tuple[int, int, Instruction]]:
+        """Each instruction with its number and the place of its first word."""
+        word = self.word
+        for number, instruction in enumerate(self.instructions, self.first):
+            yield number, word, instruction
+            word += len(instruction.words)
+
+
+@dataclass(frozen=True)
+class Code:
+    """A program's code.
+
+    Attributes:
+        networks: all of them, of the main unit, then of the sub unit.
+    """
+
+    networks: tuple[Network, ...]
+
+    @classmethod
+    def of(cls, *units: Sequence[int]) -> Code:
+        """Read the words of the main unit, and those of the sub unit."""
+        return cls(tuple(_networks(units)))
+
+    @property
+    def instructions(self) -> tuple[Instruction, ...]:
+        """All instructions in order."""
+        return tuple(instruction for network in self.networks for instruction in network.instructions)
+
+    @cached_property
+    def words(self) -> tuple[int, ...]:
+        """All words in order, without the end mark between the units."""
+        return tuple(word for network in self.networks for word in network.words)
+
+    @property
+    def unknown_words(self) -> int:
+        """How many words are not understood."""
+        return sum(len(found.words) for found in self.instructions if not found.known)
+
+
+def _networks(units: Sequence[Sequence[int]]) -> Iterator[Network]:
+    number = first = word = 0
+    for unit, words in enumerate(units):
+        group: list[Instruction] = []
+        for instruction in decode(words):
+            if group and instruction.form.begins:
+                yield (done := Network(number, first, word, unit, tuple(group)))
+                number, first, word = number + 1, first + len(group), word + len(done.words)
+                group = []
+            group.append(instruction)
+        if group:
+            yield (done := Network(number, first, word, unit, tuple(group)))
+            number, first, word = number + 1, first + len(group), word + len(done.words)

@@ -1,0 +1,215 @@
+"""The operands of a function: what their words mean, how they are printed, what the function does to them.
+
+An operand takes one word or two, high word first, and each word's bytes are swapped::
+
+    100A           -> 0A10          R8
+    0000 3C00      -> 0000003C      60, of 32 bits
+    7A44 0000      -> 447A0000      1000.0
+
+Whether a source is a constant stands in the low nibble of the function's word, a bit for each of two.
+"""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+from enum import Enum, auto
+from math import isfinite
+from typing import TYPE_CHECKING, Final
+
+from fatektool.ladder.addresses import (
+    Name,
+    Span,
+    bit_name,
+    bit_span,
+    register_name,
+    register_span,
+    spans_of,
+)
+from fatektool.ladder.grades import Grade
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+
+class Kind(Enum):
+    """What an operand's value is."""
+
+    REGISTER = auto()  # a byte address, or a constant where the nibble says so
+    FLOAT = auto()  # the same, the constant a float
+    NUMBER = auto()  # a byte address if it is large enough for one, else a number
+    CODE = auto()  # always a number
+    BIT = auto()  # a bit address
+    TEXT = auto()  # two characters
+    MUTE = auto()  # a word that is not printed
+
+
+class Use(Enum):
+    """What the function does to the operand."""
+
+    READ = auto()
+    WRITE = auto()
+    CHANGE = auto()  # reads and writes
+    READ_ON = auto()  # reads it and the registers behind it, as many as something else says
+    WRITE_ON = auto()
+    CHANGE_ON = auto()
+    NOTHING = auto()
+
+    @property
+    def reads(self) -> bool:
+        """True if the function's work depends on it."""
+        return self in {Use.READ, Use.CHANGE, Use.READ_ON, Use.CHANGE_ON}
+
+    @property
+    def writes(self) -> bool:
+        """True if the function writes it."""
+        return self in {Use.WRITE, Use.CHANGE, Use.WRITE_ON, Use.CHANGE_ON}
+
+    @property
+    def goes_on(self) -> bool:
+        """True if registers behind the named one belong to it, and it is not known how many."""
+        return self in {Use.READ_ON, Use.WRITE_ON, Use.CHANGE_ON}
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """One operand of a form: a row's statement of what stands in its place.
+
+    Attributes:
+        kind: what its value is.
+        use: what the function does to it.
+        constant: the bit of the low nibble that makes it a constant; 0 where none does.
+        words: how many words of code it takes, 1 or 2.
+        registers: how many registers it stands for, 1, 2 or 4.
+    """
+
+    kind: Kind = Kind.REGISTER
+    use: Use = Use.READ
+    constant: int = 0
+    words: int = 1
+    registers: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Operand:
+    """An operand as it stands in an instruction.
+
+    Attributes:
+        part: what its form says of it.
+        value: its words with their bytes swapped, the first the high one.
+        text: as the vendor prints it.
+        grade: how sure the text is.
+        element: the element that it names, if it is one.
+        spans: the memory that it stands for; empty where that is not known, or where it is a constant.
+    """
+
+    part: Part
+    value: int
+    text: str
+    grade: Grade = Grade.A
+    element: str | None = None
+    spans: tuple[Span, ...] = ()
+
+    def __str__(self) -> str:
+        return self.text
+
+    @property
+    def high(self) -> int:
+        """The high byte of a value of one word."""
+        return self.value >> 8
+
+    @property
+    def low(self) -> int:
+        """The low byte of a value of one word."""
+        return self.value & 0xFF
+
+
+_FIRST_ADDRESS: Final = 0x100  # the lowest byte address that is a register
+
+
+def swapped(word: int) -> int:
+    """A word with its bytes swapped."""
+    return (word & 0xFF) << 8 | word >> 8
+
+
+def value_of(words: Sequence[int]) -> int:
+    """The value of an operand's words, the first the high one."""
+    value = 0
+    for word in words:
+        value = value << 16 | swapped(word)
+    return value
+
+
+def words_of(value: int, count: int) -> tuple[int, ...]:
+    """The words of an operand's value: what ``value_of`` reads."""
+    return tuple(swapped(value >> 16 * place & 0xFFFF) for place in reversed(range(count)))
+
+
+def operand(part: Part, value: int, nibble: int) -> Operand:
+    """Name an operand.
+
+    Args:
+        part: what its form says of it.
+        value: its words with their bytes swapped.
+        nibble: the low nibble of the function's word.
+    """
+    if part.kind is Kind.BIT:
+        return _bit(part, value)
+    if part.kind in {Kind.MUTE, Kind.CODE, Kind.TEXT}:
+        return Operand(part, value, characters(value) if part.kind is Kind.TEXT else str(value))
+    if part.kind is Kind.NUMBER and value < _FIRST_ADDRESS:
+        return Operand(part, value, str(value), Grade.B)
+    if nibble & part.constant:
+        return _constant(part, value)
+    return _register(part, value)
+
+
+def number(value: int, bits: int) -> str:
+    """A constant as it is shown: decimal, and hex where the top bit is set, as its sign is not known."""
+    return f"{value:0{bits // 4}X}H" if value >> bits - 1 else str(value)
+
+
+def characters(value: int) -> str:
+    """Two characters packed as the first times 128 plus the second; a NUL is left out."""
+    return "".join(chr(code) for code in (value >> 7, value & 0x7F) if code)
+
+
+def _constant(part: Part, value: int) -> Operand:
+    if part.kind is Kind.FLOAT:
+        return Operand(part, value, _float(value), Grade.B)
+    sure = value < 1 << 15
+    return Operand(part, value, number(value, 16 * part.words), Grade.A if sure else Grade.B)
+
+
+def _register(part: Part, value: int) -> Operand:
+    if value > 0xFFFF:
+        return Operand(part, value, f"@{value:08X}", Grade.C)
+    return _named(part, value, register_name(value), (register_span(value, part.registers),))
+
+
+def _bit(part: Part, value: int) -> Operand:
+    name = bit_name(value) if value <= 0xFFF else None
+    if name is None:
+        return Operand(part, value, f"@{value:04X}", Grade.C)
+    return _named(part, value, name, (bit_span(value),))
+
+
+def _named(part: Part, value: int, name: Name, spans: tuple[Span, ...]) -> Operand:
+    if name.element is None:
+        return Operand(part, value, name.text, name.grade)
+    if name.element[0] in "TC":  # a timer is its contact and its value
+        spans = spans_of(name.element)
+    return Operand(part, value, name.text, name.grade, name.element, spans)
+
+
+def _float(value: int) -> str:
+    """A float of 32 bits in the fewest digits that stand for it."""
+    raw = value.to_bytes(4, "big")
+    (exact,) = struct.unpack(">f", raw)
+    if not isfinite(exact):
+        return f"{value:08X}H"
+    for digits in range(6, 10):
+        text = f"{exact:.{digits}g}"
+        if struct.pack(">f", float(text)) == raw:
+            return text if "." in text or "e" in text else f"{text}.0"
+    return f"{value:08X}H"

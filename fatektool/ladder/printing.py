@@ -1,0 +1,55 @@
+"""A function's text: its form's, with operands and what the low nibble says filled in."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
+
+from fatektool.ladder.forms import Form, Shape
+from fatektool.ladder.operands import characters
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fatektool.ladder.operands import Operand
+
+_KEY: Final = 0x55
+
+
+def print_function(form: Form, free: int, operands: Sequence[Operand]) -> str:
+    """The text of a function, a mark or a label.
+
+    Args:
+        form: its row.
+        free: what stands in the free bits of its first word.
+        operands: its operands, named.
+    """
+    nibble = (form.fixed[0] | free) & 0x0F if form.shape is Shape.FUNCTION else 0
+    pulse = f"{nibble:X}" in form.pulse
+    return form.text.format(
+        *_with_key_in_hex(operands),
+        P="P" if pulse else "",
+        D="D" if nibble & 2 else "",
+        brackets=_brackets(operands, pulse=pulse),
+        one=nibble & 1,
+        two=nibble & 3,
+        three=nibble & 7,
+        char=characters(free >> 8),
+    )
+
+
+def _brackets(operands: Sequence[Operand], *, pulse: bool) -> str:
+    """Of SET and RST. A word of discretes (WY0) stands without them in the notes, T and C with them (A)."""
+    if operands and operands[0].text.startswith("W"):
+        return ""
+    return "(P)" if pulse else "( )"
+
+
+def _with_key_in_hex(operands: Sequence[Operand]) -> Sequence[Operand]:
+    """``S:5501H D:R4055``: that register takes a key of 55H and a number, in a byte each (notes)."""
+    match operands:
+        case [constant, target] if (
+            target.element == "R4055" and constant.element is None and constant.high == _KEY
+        ):
+            return [replace(constant, text=f"{constant.value:04X}H"), target]
+    return operands

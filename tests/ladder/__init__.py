@@ -1,0 +1,1 @@
+"""Words, instructions and networks."""
