@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Generic, TypeVar
 
+from fatektool.errors import PlcRefused
 from fatektool.stream import ask_in_stream
 
 if TYPE_CHECKING:
@@ -44,15 +45,44 @@ def ask_all(
         NoAnswer: one of them found no answer to trust.
         PlcRefused: one of them was refused.
     """
+    answers, refusal = ask_until_refused(link, requests, on_answer)
+    if refusal is not None:
+        raise refusal
+    return answers
+
+
+def ask_until_refused(
+    link: Link, requests: Sequence[Request[A]], on_answer: Callable[[int], None] | None = None
+) -> tuple[list[A], PlcRefused | None]:
+    """Send reads one after the other, up to the first that is refused; give the proven answers before it.
+
+    Args:
+        link: the line.
+        requests: reads.
+        on_answer: is called with the number of answers so far.
+
+    Returns:
+        The answers in order, and what the PLC said to the request behind them; None if none was refused.
+
+    Raises:
+        NoAnswer: one of them found no answer to trust.
+    """
     batch = _Batch(link, requests, on_answer)
-    while len(batch.answers) < len(requests):
-        if len(batch.answers) + 1 < len(requests):
-            ask_in_stream(link, requests, len(batch.answers), batch.take)
-        if len(batch.answers) < len(requests):
-            batch.ask()
-    if len(requests) > 1:
-        batch.close()
-    return batch.answers
+    refusal: PlcRefused | None = None
+    try:
+        while len(batch.answers) < len(requests):
+            if len(batch.answers) + 1 < len(requests):
+                ask_in_stream(link, requests, len(batch.answers), batch.take)
+            if len(batch.answers) < len(requests):
+                batch.ask()
+    except PlcRefused as error:
+        refusal = error
+    if batch.answers and len(requests) > 1:
+        try:
+            batch.close()
+        except PlcRefused as error:  # what was answered before is refused now: nothing is proven
+            return [], error
+    return batch.answers, refusal
 
 
 def tell_all(

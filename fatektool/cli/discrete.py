@@ -15,7 +15,8 @@ from fatektool.cli.modbus_map import modbus_map_option
 from fatektool.cli.options import Connection, connection_options, yes_option
 from fatektool.cli.read import warn_of
 from fatektool.errors import PlcError, PlcRefused, UsageError
-from fatektool.jobs.registers import read_disabled, read_elements
+from fatektool.jobs.disabled import read_disabled
+from fatektool.jobs.registers import read_elements
 from fatektool.jobs.selection import parse_items
 from fatektool.protocol.commands import Command, Control, ControlDiscrete
 
@@ -104,8 +105,9 @@ def _show(
         control: what was asked of them; None for nothing.
     """
     on = read_elements(plc, elements)
-    flags, errors = read_disabled(plc, on.values)
-    unread = {str(element): error for element, error in (on.errors | errors).items()}
+    flags, held = read_disabled(plc, on.values)
+    unread = {str(element): error for element, error in (on.errors | held.errors).items()}
+    not_asked = [name for name in map(str, sorted(on.not_asked | held.not_asked)) if name not in refused]
     tells = Command.READ_DISABLED in plc.link.codec.commands
     states: dict[str, dict[str, bool | None]] = {
         str(element): {"on": bool(on.values[element]), "disabled": flags.get(element)}
@@ -124,10 +126,11 @@ def _show(
         "discretes": states,
         "not_taken": not_taken,
         "errors": unread,
+        "not_asked": not_asked,
     }
     voice.show(document, _lines(states))
     warn_of({name: f"did not take: {why}" for name, why in not_taken.items()}, voice)
-    warn_of(unread, voice)
+    warn_of(unread, voice, not_asked)
     return PlcError.exit_code if unread or not_taken else 0
 
 

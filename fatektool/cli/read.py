@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -16,7 +17,7 @@ from fatektool.jobs.selection import parse_items
 from fatektool.protocol.values import Value, decode
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from fatektool.jobs.registers import Reading
     from fatektool.jobs.selection import Item
@@ -43,6 +44,7 @@ def read_command(elements: tuple[str, ...], connection: Connection, voice: Voice
     with connection.open(voice) as plc:
         reading = read_elements(plc, [item.element for item in items])
         values, errors = typed(items, reading)
+        not_asked = [item.key for item in items if item.element in reading.not_asked]
         document = {
             "schema": "fatektool.read/1",
             **where(plc),
@@ -50,20 +52,38 @@ def read_command(elements: tuple[str, ...], connection: Connection, voice: Voice
             "values": values,
             "elements": raw_values(items, reading),
             "errors": errors,
+            "not_asked": not_asked,
         }
     voice.show(document, table((key, shown(value, None)) for key, value in values.items()))
-    warn_of(errors, voice)
+    warn_of(errors, voice, not_asked)
     return PlcError.exit_code if errors else 0
 
 
-def warn_of(errors: dict[str, str], voice: Voice) -> None:
-    """Say what is wrong with which elements: the first few, and how many more."""
-    keys = list(errors)
+def warn_of(errors: Mapping[str, str], voice: Voice, not_asked: Sequence[str] = ()) -> None:
+    """Say what is wrong with which elements: the first few, and how many more.
+
+    Args:
+        errors: what is wrong, by key.
+        voice: says it.
+        not_asked: those of them that were not asked; a line for neighbours with the same reason.
+    """
+    left_out = set(not_asked)
+    keys = [key for key in errors if key not in left_out]
     told = keys if len(keys) <= _MOST_NAMED else keys[: _MOST_NAMED // 2]
     for key in told:
         voice.warn(f"{key}: {errors[key]}")
     if len(told) < len(keys):
         voice.warn(f"and {len(keys) - len(told)} more, {keys[len(told)]} to {keys[-1]}; --json tells of each")
+    groups = [list(some) for _, some in groupby(not_asked, errors.__getitem__)]
+    for group in groups[:_MOST_NAMED]:
+        voice.warn(f"{_first_to_last(group)}: {errors[group[0]]}")
+    rest = [key for group in groups[_MOST_NAMED:] for key in group]
+    if rest:
+        voice.warn(f"{_first_to_last(rest)}: not asked either: --json tells of each why")
+
+
+def _first_to_last(keys: Sequence[str]) -> str:
+    return keys[0] if len(keys) == 1 else f"{keys[0]} to {keys[-1]} ({len(keys)})"
 
 
 def typed(items: list[Item], reading: Reading) -> tuple[dict[str, Value | None], dict[str, str]]:

@@ -154,7 +154,7 @@ def take_command(
         click.echo(text, nl=False)
     if report is not None:
         write_snapshot_report(report, snapshot, append or folder)
-    warn_of(snapshot.errors, voice)
+    warn_of(snapshot.errors, voice, snapshot.not_asked)
     return PlcError.exit_code if snapshot.errors else 0
 
 

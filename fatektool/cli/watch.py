@@ -154,6 +154,7 @@ def _document(snapshot: Snapshot) -> dict[str, Any]:
         "duration_s": snapshot.duration_s,
         "values": snapshot.values,
         "errors": snapshot.errors,
+        "not_asked": snapshot.not_asked,
     }
 
 

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fatektool.errors import PlcRefused, UsageError
-from fatektool.jobs.registers import by_request, named, read_disabled, read_elements, turnaround
+from fatektool.jobs.disabled import read_disabled
+from fatektool.jobs.division import Division, Refusals
+from fatektool.jobs.registers import by_request, named, read_elements, turnaround
 from fatektool.jobs.selection import overlapping
 from fatektool.planner import plan_writes
 from fatektool.planner.atoms import atoms_of
@@ -54,8 +56,7 @@ def write_elements(plc: Plc, items: Sequence[tuple[Element, int]]) -> list[NotTa
     both = overlapping(element for element, _ in items)
     if both is not None:
         raise UsageError(f"{both[0]} and {both[1]} overlap: what should be there?")
-    refused: dict[Element, str] = {}
-    _write(plc, list(items), refused, looked=False)
+    refused = _Writer(plc, dict(items)).write()
     found = read_elements(plc, [element for element, _ in items])
     failed = [
         (element, wanted)
@@ -73,54 +74,59 @@ def write_elements(plc: Plc, items: Sequence[tuple[Element, int]]) -> list[NotTa
     ]
 
 
-def _write(plc: Plc, items: list[tuple[Element, int]], refused: dict[Element, str], *, looked: bool) -> None:
-    """Write all, and take apart what is refused.
+class _Writer:
+    """Writes, and finds out what is refused."""
 
-    Args:
-        plc: the PLC.
-        items: elements with values.
-        refused: gets what the PLC says of those that it refuses.
-        looked: True if all of them can be read, so that it is the writing that is refused.
-    """
-    requests = [_write_alone(*items[0])] if len(items) == 1 else _plan(plc, items)
-    failed = []
-    said = ""
-    for request in requests:
+    def __init__(self, plc: Plc, values: dict[Element, int]) -> None:
+        self._plc = plc
+        self._values = values
+        self._failed: list[Request[None]] = []
+
+    def write(self) -> dict[Element, str]:
+        """Write all; what the PLC says of those that it refuses, or why one was not asked."""
+        wanted = sorted(self._values)
+        left = self._write_together(wanted)
+        if not left:
+            return {}
+        groups = by_request(left, self._failed)
+        unread = read_elements(self._plc, left).errors  # what cannot be read is not written either
+        refusals = Refusals(dict(unread))
+        division = Division(wanted, self._write_together, self._write_alone, refusals)
+        for group in groups:
+            writable = [element for element in group if element not in unread]
+            if len(writable) < len(group):
+                writable = self._write_together(writable)
+            division.divide(writable)
+        return refusals.errors
+
+    def _write_together(self, elements: Sequence[Element]) -> list[Element]:
+        self._failed = []
+        for request in _plan(self._plc, [(element, self._values[element]) for element in elements]):
+            try:
+                self._plc.link.ask(request)
+            except PlcRefused:
+                self._failed.append(request)
+        if not self._failed:
+            return []
+        groups = by_request(elements, self._failed)
+        if len(groups) > len(self._failed):
+            groups.pop()  # those whose requests were not refused
+        return sorted(element for group in groups for element in group)
+
+    def _write_alone(self, element: Element) -> str | None:
+        value = self._values[element]
+        one = element.kind.bits == 1
         try:
-            plc.link.ask(request)
+            self._plc.link.ask(
+                WriteDiscretes(element, (bool(value),)) if one else WriteRegisters(element, (value,))
+            )
         except PlcRefused as error:
-            failed.append(request)
-            said = error.message
-    if not failed:
-        return
-    if len(items) == 1:
-        refused[items[0][0]] = said
-        return
-    values = dict(items)
-    groups = by_request(sorted(values), failed)
-    if len(groups) > len(failed):
-        groups.pop()  # those whose requests were not refused
-    left = [element for group in groups for element in group]
-    if not looked:
-        errors = read_elements(plc, left).errors
-        refused |= errors
-        groups = [[element for element in group if element not in errors] for group in groups]
-    for group in groups:
-        pairs = [(element, values[element]) for element in group]
-        parts = [pairs[: len(pairs) // 2], pairs[len(pairs) // 2 :]] if looked else [pairs]
-        for part in parts:
-            if part:
-                _write(plc, part, refused, looked=True)
+            return error.message
+        return None
 
 
 def _plan(plc: Plc, items: list[tuple[Element, int]]) -> list[Request[None]]:
     return plan_writes(items, plc.link.codec, turnaround=turnaround(plc))
-
-
-def _write_alone(element: Element, value: int) -> Request[None]:
-    if element.kind.bits == 1:
-        return WriteDiscretes(element, (bool(value),))
-    return WriteRegisters(element, (value,))
 
 
 def _why(plc: Plc, failed: list[tuple[Element, int]]) -> dict[Element, str]:

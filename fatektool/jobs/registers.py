@@ -1,25 +1,23 @@
 """Reading elements of any kind, all that is asked in the fewest bytes.
 
-An element that the PLC refuses does not lose the others: a request that is refused is taken apart until the
-refused element stands alone. Only of many neighbours that end past what the PLC has, not every one is asked:
-see ``_all_refused``.
+An element that the PLC refuses does not lose the others. When a request for several is refused, the PLC is
+asked how many it has (53). Past that, the first of neighbours is asked, and if it is refused, the others are
+not. All else that was refused together is divided: see ``division.py``.
 """
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, field
 from itertools import chain
 from typing import TYPE_CHECKING, Any, Final
 
-from fatektool.batch import ask_all
+from fatektool.batch import ask_all, ask_until_refused
 from fatektool.errors import PlcRefused
+from fatektool.jobs.division import Division, Refusals
+from fatektool.jobs.extent import ask_limits, excluded, extent_of, neighbours
 from fatektool.planner import Values, plan_reads, turnaround_bytes
 from fatektool.planner.atoms import Atom, atoms_of
 from fatektool.protocol.commands import (
-    MAX_DISCRETES,
-    Command,
-    ReadDisabled,
     ReadDiscretes,
     ReadMixed,
     ReadRegisters,
@@ -38,9 +36,6 @@ if TYPE_CHECKING:
 TYPICAL_TURNAROUND_S: Final = 0.010
 """A PLC answers once a program scan: some milliseconds. The plan hardly depends on it."""
 
-_MANY: Final = 32
-_SAMPLES: Final = 5
-
 
 @dataclass(slots=True)
 class Reading:
@@ -48,13 +43,15 @@ class Reading:
 
     Attributes:
         values: raw and unsigned, by element; a discrete is 0 or 1.
-        errors: what the PLC said of the elements that it refused.
+        errors: of each element without a value: what the PLC said to it, or why it was not asked.
+        not_asked: those of them that were not asked.
         requests: how many requests it took.
         ended: when the last answer was there, on the transport's clock.
     """
 
     values: dict[Element, int] = field(default_factory=dict)
     errors: dict[Element, str] = field(default_factory=dict)
+    not_asked: set[Element] = field(default_factory=set)
     requests: int = 0
     ended: float = 0.0
 
@@ -67,7 +64,7 @@ def read_elements(
     Args:
         plc: the PLC.
         elements: in any order, also in stretches, whose elements are named when all is read.
-        limits: how many of a kind the PLC has, by symbol, where that is known.
+        limits: how many of a kind the PLC has, by symbol; None if it has not been asked.
 
     Raises:
         LineError: no answer.
@@ -75,14 +72,17 @@ def read_elements(
     wanted = list(dict.fromkeys(elements))
     reader = _Reader(plc, limits)
     reader.read(wanted)
-    reading = reader.reading
-    reading.ended = plc.link.transport.clock()
+    ended = plc.link.transport.clock()
     named_one_by_one = _each(wanted)
-    errors = reading.errors
-    reading.errors = {element: errors[element] for element in named_one_by_one if element in errors}
+    errors = reader.refusals.errors
     value = reader.known.value
-    reading.values = {element: value(element) for element in named_one_by_one if element not in errors}
-    return reading
+    return Reading(
+        {element: value(element) for element in named_one_by_one if element not in errors},
+        {element: errors[element] for element in named_one_by_one if element in errors},
+        reader.refusals.not_asked,
+        reader.requests,
+        ended,
+    )
 
 
 def _each(elements: Iterable[Element | Stretch]) -> list[Element]:
@@ -92,102 +92,93 @@ def _each(elements: Iterable[Element | Stretch]) -> list[Element]:
 
 
 class _Reader:
-    """Reads, and takes apart what is refused."""
+    """Reads, and finds out what is refused."""
 
     def __init__(self, plc: Plc, limits: Mapping[str, int] | None) -> None:
         self._plc = plc
         self._limits = limits
         self.known = Values()
-        self.reading = Reading()
+        self.refusals = Refusals()
+        self.requests = 0
 
     def read(self, elements: Sequence[Element | Stretch]) -> None:
         """Read all of these, or know why not."""
-        if len(elements) == 1 and isinstance(elements[0], Element):
-            self._read_alone(elements[0])
-            return
-        requests = plan_reads(
-            elements, self._plc.link.codec, turnaround=turnaround(self._plc), limits=self._limits
-        )
-        refused = self._ask(requests)
+        requests = self._plan(elements)
+        refused, unasked = self._ask(requests, stop=self._limits is None)
         if not refused:
             return
-        missing = [element for element in sorted(_each(elements)) if element not in self.known]
-        for part in by_request(missing, refused):
-            self._take_apart(part)
+        wanted = sorted(_each(elements))
+        division = Division(wanted, self._ask_together, self._ask_alone, self.refusals)
+        missing = self._missing(wanted)
+        if self._limits is None and len(missing) > 1:
+            self._limits = ask_limits(self._plc)
+            self.requests += 1
+            inside = self._leave_out_excluded(missing, division)
+            if unasked or len(inside) < len(missing):
+                refused, _ = self._ask(self._plan(inside))
+                missing = self._missing(inside)
+        if missing:
+            for part in by_request(missing, refused):
+                division.divide(part)
 
-    def _ask(self, requests: Sequence[Request[Any]]) -> list[Request[Any]]:
-        """Ask all, and go on behind one that is refused; give those."""
-        refused = []
-        while requests:
-            answered = 0
+    def _plan(self, elements: Sequence[Element | Stretch]) -> list[Request[Any]]:
+        codec = self._plc.link.codec
+        return plan_reads(elements, codec, turnaround=turnaround(self._plc), limits=self._limits)
 
-            def count(number: int) -> None:
-                nonlocal answered
-                answered = number
-                self.reading.requests += 1
+    def _missing(self, elements: Iterable[Element]) -> list[Element]:
+        return [element for element in elements if element not in self.known]
 
-            try:
-                self._take(requests, ask_all(self._plc.link, requests, count))
-            except PlcRefused:  # those before it are asked again: their answers were not proven yet
-                refused.append(requests[answered])
-                self.reading.requests += 1
-                before = requests[:answered]
-                requests = requests[answered + 1 :]
-                if before:
-                    refused += self._ask(before)
-            else:
-                break
-        return refused
+    def _ask(
+        self, requests: Sequence[Request[Any]], *, stop: bool = False
+    ) -> tuple[list[Request[Any]], Sequence[Request[Any]]]:
+        """Ask all, or to the first that is refused; give those that are refused, and the rest."""
+        refused: list[Request[Any]] = []
+        while requests and not (stop and refused):
+            answers, refusal = ask_until_refused(self._plc.link, requests)
+            for request, answer in zip(requests, answers, strict=False):
+                self.known.take(request, answer)
+            self.requests += len(answers)
+            rest = requests[len(answers) :]
+            if refusal is not None:
+                refused.append(rest[0])
+                self.requests += 1
+                rest = rest[1:]
+            requests = rest
+        return refused, requests
 
-    def _take(self, requests: Sequence[Request[Any]], answers: Sequence[Any]) -> None:
-        for request, answer in zip(requests, answers, strict=True):
-            self.known.take(request, answer)
+    def _ask_together(self, elements: Sequence[Element]) -> list[Element]:
+        refused, _ = self._ask(self._plan(elements))
+        return self._missing(elements) if refused else []
 
-    def _take_apart(self, elements: list[Element]) -> None:
-        """Read elements whose common request was refused."""
-        if len(elements) >= _MANY and self._all_refused(elements):
-            return
-        left = [e for e in elements if e not in self.known and e not in self.reading.errors]
-        if len(left) == 1:
-            self.read(left)
-        elif left:
-            self.read(left[: len(left) // 2])
-            self.read(left[len(left) // 2 :])
+    def _leave_out_excluded(self, elements: Sequence[Element], division: Division) -> list[Element]:
+        """Ask the first of neighbours that the PLC says it does not have; give what is still to be read."""
+        has = self._limits or {}
+        inside = [element for element in elements if not excluded(element, has)]
+        for first, *others in neighbours(element for element in elements if excluded(element, has)):
+            if division.refuses(first):
+                why = f"{first} is refused, and its status (53) says that the PLC has {extent_of(first, has)}"
+                self.refusals.leave_out(others, why)
+            else:  # it has more than it says
+                inside += others
+        return sorted(inside)
 
-    def _all_refused(self, elements: list[Element]) -> bool:
-        """True if many neighbours, refused together, are each refused: past the PLC's end, or in a gap.
-
-        Asking each of R8072 to R9999 would take minutes on a serial line. So five of them are asked alone,
-        first, last and between: if each is refused, so are the others.
-        """
-        if len({element.symbol for element in elements}) > 1:
-            return False
-        last = len(elements) - 1
-        samples = [elements[last * place // (_SAMPLES - 1)] for place in range(_SAMPLES)]
-        for sample in (samples[-1], *samples[:-1]):
-            self._read_alone(sample)
-            if sample not in self.reading.errors:
-                return False
-        said = self.reading.errors[samples[0]]
-        for element in elements:
-            self.reading.errors.setdefault(element, re.sub(rf"\b{samples[0]}\b", str(element), said))
-        return True
-
-    def _read_alone(self, element: Element) -> None:
+    def _ask_alone(self, element: Element) -> str | None:
         one = element.kind.bits == 1
         request: Request[Any] = ReadDiscretes(element, 1) if one else ReadRegisters(element, 1)
         link = self._plc.link
+        self.requests += 1
         try:
-            self.reading.requests += 1
             try:
-                self._take([request], ask_all(link, [request]))
+                (answer,) = ask_all(link, [request])
             except PlcRefused:
                 if not link.counters.trouble:
                     raise
                 link.fence(request)  # on a bad line it may have been the answer to an earlier request
-                self._take([request], ask_all(link, [request]))
+                (answer,) = ask_all(link, [request])
         except PlcRefused as error:
-            self.reading.errors[element] = error.message
+            return error.message
+        self.known.take(request, answer)
+        return None
 
 
 def turnaround(plc: Plc) -> float:
@@ -219,54 +210,6 @@ def by_request(elements: Sequence[Element], requests: Sequence[Request[Any]]) ->
         number = min(owner.get(atom, len(requests)) for atom in atoms_of(element))
         groups.setdefault(number, []).append(element)
     return [groups[number] for number in sorted(groups)]
-
-
-def read_disabled(plc: Plc, elements: Iterable[Element]) -> tuple[dict[Element, bool], dict[Element, str]]:
-    """Which discretes are disabled, and what the PLC said of those that it refused.
-
-    Nothing is known of any where the protocol has no command for it.
-
-    Args:
-        plc: the PLC.
-        elements: discretes of one bit.
-    """
-    flags: dict[Element, bool] = {}
-    errors: dict[Element, str] = {}
-    if Command.READ_DISABLED not in plc.link.codec.commands:
-        return flags, errors
-    todo = _runs(elements)
-    try:
-        requests = [ReadDisabled(first, count) for first, count in todo]
-        for (first, _), bits in zip(todo, ask_all(plc.link, requests), strict=True):
-            flags |= {first.after(place): bit for place, bit in enumerate(bits)}
-    except PlcRefused:
-        while todo:
-            first, count = todo.pop()
-            try:
-                (bits,) = ask_all(plc.link, [ReadDisabled(first, count)])
-            except PlcRefused as error:
-                if count == 1:
-                    errors[first] = error.message
-                else:
-                    half = count // 2
-                    todo += [(first, half), (first.after(half), count - half)]
-            else:
-                flags |= {first.after(place): bit for place, bit in enumerate(bits)}
-    return flags, errors
-
-
-def _runs(elements: Iterable[Element]) -> list[tuple[Element, int]]:
-    """Neighbours together, as many as one request asks for."""
-    runs: list[tuple[Element, int]] = []
-    for element in sorted(set(elements)):
-        if runs:
-            first, count = runs[-1]
-            near = (element.symbol, element.address) == (first.symbol, first.address + count)
-            if near and count < MAX_DISCRETES:
-                runs[-1] = (first, count + 1)
-                continue
-        runs.append((element, 1))
-    return runs
 
 
 def named(names: Iterable[str], most: int = 5) -> str:

@@ -6,6 +6,7 @@
     values   {key: value}                       what people and scripts want
     elements {key: {element, type, raw, unit?, scale?, offset?}}    what it takes to put it back
     errors   {key: why its value is null}
+    not_asked [key, …]                          those of errors that the PLC was not asked for, if any
 """
 
 from __future__ import annotations
@@ -13,12 +14,13 @@ from __future__ import annotations
 import math
 import os
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.errors import DataError, UsageError
+from fatektool.jobs.extent import limits
 from fatektool.jobs.registers import read_elements
-from fatektool.jobs.snapshot_spec import everything, items_in, limits
+from fatektool.jobs.snapshot_spec import everything, items_in
 from fatektool.jobs.times import utc
 from fatektool.program.files import file_error
 from fatektool.program.strict_json import read_json
@@ -58,6 +60,7 @@ class Snapshot:
         values: by key; None where there is an error.
         elements: by key: element, type, raw and, where there is one, unit, scale, offset.
         errors: by key: why there is no value.
+        not_asked: keys of ``errors`` that the PLC was not asked for; not in the document if none are.
     """
 
     time: str
@@ -70,10 +73,14 @@ class Snapshot:
     values: dict[str, Value | None]
     elements: dict[str, dict[str, Any]]
     errors: dict[str, str]
+    not_asked: list[str] = field(default_factory=list)
 
     def document(self) -> dict[str, Any]:
         """The snapshot as JSON has it."""
-        return {"schema": SCHEMA, **{name: getattr(self, name) for name in self.__slots__}}
+        document = {"schema": SCHEMA, **{name: getattr(self, name) for name in self.__slots__}}
+        if not self.not_asked:
+            del document["not_asked"]
+        return document
 
 
 def take_snapshot(plc: Plc, items: Sequence[SpecItem]) -> Snapshot:
@@ -139,6 +146,7 @@ def _snapshot(
         values,
         elements,
         errors,
+        [item.item.key for item in items if item.item.element in reading.not_asked],
     )
 
 
@@ -199,7 +207,12 @@ def parse_snapshot(data: bytes, name: str, note: Callable[[str], None] = no_note
         raise DataError(f"{name}: {key!r} stands in one of values and elements only", file=name)
     for key, part in document["elements"].items():
         _check(part, document["values"][key], f"{name}: element {key!r}")
-    return Snapshot(**{key: document[key] for key in _CHECKS})
+    not_asked = document.get("not_asked", [])
+    if not isinstance(not_asked, list) or not all(
+        isinstance(key, str) and key in document["errors"] for key in not_asked
+    ):
+        raise DataError(f"{name}: not_asked is damaged", file=name)
+    return Snapshot(**{key: document[key] for key in _CHECKS}, not_asked=not_asked)
 
 
 def _document(data: bytes, name: str, note: Callable[[str], None]) -> object:

@@ -20,6 +20,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.errors import DataError, UsageError
+from fatektool.jobs.extent import limits
 from fatektool.jobs.selection import Item, parse_item
 from fatektool.program.strict_toml import read_toml
 from fatektool.protocol.elements import Element, Stretch
@@ -185,9 +186,7 @@ def everything(system: System) -> list[Stretch]:
 
     L relays have no element on the link.
     """
-    counts = limits(system)
-    counts |= {"RT": system.timers, "RC": system.counters, "R": system.r_registers, "D": system.d_registers}
-    firsts = [(Element(symbol, 0), count) for symbol, count in counts.items()]
+    firsts = [(Element(symbol, 0), count) for symbol, count in limits(system).items()]
     return [Stretch(first, min(count, first.kind.last + 1)) for first, count in firsts if count]
 
 
@@ -199,15 +198,3 @@ def items_in(stretches: Iterable[Stretch]) -> list[SpecItem]:
         for kind in (default_type(stretch.first.kind.bits),)
         for element in stretch
     ]
-
-
-def limits(system: System) -> dict[str, int]:
-    """How many discretes of each kind the PLC has."""
-    return {
-        "X": system.discrete_inputs,
-        "Y": system.discrete_outputs,
-        "M": system.m_relays,
-        "S": system.s_relays,
-        "T": system.timers,
-        "C": system.counters,
-    }

@@ -9,15 +9,18 @@ from fatektool.jobs.snapshot import Snapshot, take_snapshot
 from fatektool.jobs.snapshot_spec import items_of
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.line import SimulatedLine
+from fatektool.simulator.refusal import Refusal, RefusalCode
 from tests.cli.house import check
 from tests.plcs import Simulated, simulated
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from collections.abc import Set as AbstractSet
     from pathlib import Path
 
     import pytest
 
+    from fatektool.simulator.elements import Kind
     from fatektool.simulator.plc import SimulatedPlc
     from tests.cli.house import Cli, Done
 
@@ -62,6 +65,24 @@ class Plant:
 def small(**options: Any) -> Simulated:
     """A PLC with a program of one page."""
     return simulated(**{"ladder_words": 64} | options)
+
+
+def with_holes(
+    holes: AbstractSet[int], code: RefusalCode = RefusalCode.ILLEGAL_ADDRESS, **options: Any
+) -> Simulated:
+    """A PLC that refuses some of its R registers."""
+    made = small(**options)
+    memory = made.device.memory
+    check = memory.check
+
+    def refusing(kind: Kind, address: int, count: int) -> int:
+        end = check(kind, address, count)
+        if kind.area == "R" and not holes.isdisjoint(range(address, end)):
+            raise Refusal(code)
+        return end
+
+    memory.check = refusing  # type: ignore[method-assign]  # a PLC with other rules
+    return made
 
 
 def snapshot_of(*elements: str, plc: Simulated | None = None) -> Snapshot:

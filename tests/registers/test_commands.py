@@ -132,8 +132,9 @@ def test_nan_and_refused_are_null_with_an_error(plant: Plant) -> None:
 def test_many_refused_are_few_words(plant: Plant) -> None:
     done = plant.cli("read", "R8000-R9999")
     assert done.code == 4
-    assert done.err.count("\n") == 6
-    assert done.err.endswith("and 1923 more, R8077 to R9999; --json tells of each\n")
+    assert done.err.count("\n") == 2
+    why = "R8072 is refused, and its status (53) says that the PLC has R0 to R8071"
+    assert done.err.endswith(f"warning: R8073 to R9999 (1927): not asked: {why}\n")
 
 
 def test_forcing(plant: Plant) -> None:

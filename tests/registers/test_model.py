@@ -9,8 +9,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from fatektool.errors import LineError
+from fatektool.jobs.disabled import read_disabled
 from fatektool.jobs.register_writes import write_elements
-from fatektool.jobs.registers import read_disabled, read_elements
+from fatektool.jobs.registers import read_elements
 from fatektool.protocol.elements import KINDS, Element
 
 from .plant import small
@@ -170,7 +171,7 @@ def test_client_and_simulator_agree_with_a_dict(steps: list[tuple[object, ...]])
     discretes = [each for each in touched if each.kind.bits == 1]
     flags, errors = read_disabled(made.plc, discretes)
     assert flags == {each: places(each)[0] in model.disabled for each in discretes if model.has(each)}
-    assert set(errors) == {each for each in discretes if not model.has(each)}
+    assert set(errors.errors) == {each for each in discretes if not model.has(each)}
 
 
 @settings(max_examples=40, deadline=None)

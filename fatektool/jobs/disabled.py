@@ -1,0 +1,68 @@
+"""Which discretes are disabled (43)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fatektool.batch import ask_all, ask_until_refused
+from fatektool.errors import PlcRefused
+from fatektool.jobs.division import Division, Refusals
+from fatektool.protocol.commands import MAX_DISCRETES, Command, ReadDisabled
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from fatektool.client import Plc
+    from fatektool.protocol.elements import Element
+
+
+def read_disabled(plc: Plc, elements: Iterable[Element]) -> tuple[dict[Element, bool], Refusals]:
+    """Which discretes are disabled, and why that is not known of the others.
+
+    Nothing is known of any where the protocol has no command for it.
+
+    Args:
+        plc: the PLC.
+        elements: discretes of one bit.
+
+    Raises:
+        LineError: no answer.
+    """
+    flags: dict[Element, bool] = {}
+    refusals = Refusals()
+    if Command.READ_DISABLED not in plc.link.codec.commands:
+        return flags, refusals
+
+    def together(some: Sequence[Element]) -> list[Element]:
+        requests = [ReadDisabled(run[0], len(run)) for run in _runs(some)]
+        while requests:
+            answers, refusal = ask_until_refused(plc.link, requests)
+            for request, bits in zip(requests, answers, strict=False):
+                flags.update({request.first.after(place): bit for place, bit in enumerate(bits)})
+            requests = requests[len(answers) + (refusal is not None) :]
+        return [element for element in some if element not in flags]
+
+    def alone(element: Element) -> str | None:
+        try:
+            ((flags[element],),) = ask_all(plc.link, [ReadDisabled(element, 1)])
+        except PlcRefused as error:
+            return error.message
+        return None
+
+    wanted = sorted(set(elements))
+    division = Division(wanted, together, alone, refusals)
+    for run in _runs(together(wanted)):
+        division.divide(run)
+    return flags, refusals
+
+
+def _runs(elements: Iterable[Element]) -> Iterator[list[Element]]:
+    """Neighbours together, as many as one request asks for."""
+    run: list[Element] = []
+    for element in elements:
+        if run and (element != run[-1].after(1) or len(run) == MAX_DISCRETES):
+            yield run
+            run = []
+        run.append(element)
+    if run:
+        yield run
