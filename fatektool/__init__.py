@@ -1,4 +1,4 @@
-"""Back up, verify and restore ladder programs of FATEK/FACON PLCs, and diagnose them.
+r"""Back up, verify and restore ladder programs of FATEK/FACON PLCs, and diagnose them.
 
 A library user needs three names::
 
@@ -6,6 +6,14 @@ A library user needs three names::
 
     with fatektool.connect("/dev/ttyUSB0", station=1) as plc:
         program = fatektool.backup(plc)
+
+``Plc`` has a method for each command, ``is_open``, ``is_alive()``, and ``station``, which can be set to ask
+another PLC on the same line. Who sends and reads bytes himself has these::
+
+    asked = fatektool.parse_command("46", "R12", "3").request
+    fatektool.frame(asked, station=1, protocol="facon")  # b"\x02014603R0001275\x03"
+    fatektool.checksum(b"\x02014603R00012")  # b"75"
+    fatektool.error_text(0xA)  # "illegal address, past what this PLC has"
 
 Everything here is loaded when it is first used, so that ``import fatektool`` costs next to nothing
 and never loads the command line's libraries.
@@ -23,6 +31,7 @@ if TYPE_CHECKING:
     from fatektool.connection import connect
     from fatektool.errors import FatektoolError
     from fatektool.jobs.backup import backup
+    from fatektool.jobs.command_words import parse_command
     from fatektool.jobs.restore import restore
     from fatektool.jobs.status import read_status
     from fatektool.jobs.verify import verify
@@ -30,6 +39,7 @@ if TYPE_CHECKING:
     from fatektool.program.compare import compare
     from fatektool.program.image import Header, Program
     from fatektool.protocol.elements import Element
+    from fatektool.protocol.frames import checksum, error_text, frame
 
 _HOMES = {
     "Backup": "fatektool.program.archive",
@@ -39,9 +49,13 @@ _HOMES = {
     "Plc": "fatektool.client",
     "Program": "fatektool.program.image",
     "backup": "fatektool.jobs.backup",
+    "checksum": "fatektool.protocol.frames",
     "compare": "fatektool.program.compare",
     "connect": "fatektool.connection",
+    "error_text": "fatektool.protocol.frames",
+    "frame": "fatektool.protocol.frames",
     "load_backup": "fatektool.program.archive",
+    "parse_command": "fatektool.jobs.command_words",
     "read_status": "fatektool.jobs.status",
     "restore": "fatektool.jobs.restore",
     "save_backup": "fatektool.program.archive",
@@ -57,9 +71,13 @@ __all__ = [
     "Program",
     "__version__",
     "backup",
+    "checksum",
     "compare",
     "connect",
+    "error_text",
+    "frame",
     "load_backup",
+    "parse_command",
     "read_status",
     "restore",
     "save_backup",

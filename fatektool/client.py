@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fatektool.batch import ask_all, tell_all
-from fatektool.errors import DataError, PlcError
+from fatektool.errors import DataError, LineError, PlcError, PlcRefused
 from fatektool.protocol.commands import (
     DETAILED_BYTES,
     Control,
@@ -58,9 +58,44 @@ class Plc:
         self.link = link
         self.target = target
         self._resources = resources
+        self._open = True
+
+    @property
+    def is_open(self) -> bool:
+        """True until ``close``. A cable that was pulled does not show here: ask ``is_alive``."""
+        return self._open
+
+    @property
+    def station(self) -> int:
+        """Who is asked. Set it to ask another station on the same line, without opening it anew.
+
+        Raises:
+            UsageError: no PLC can have this station.
+        """
+        return self.link.station
+
+    @station.setter
+    def station(self, station: int) -> None:
+        self.link.fences.turn_to(station)
+
+    def is_alive(self) -> bool:
+        """True if the PLC answers: one request that changes nothing, with the link's time-out and retries.
+
+        A refusal is an answer too. False where nothing usable is heard, and when the line is closed.
+        """
+        if not self._open:
+            return False
+        try:
+            self.link.ask(self.link.codec.probe)
+        except PlcRefused:
+            return True
+        except LineError:
+            return False
+        return True
 
     def close(self) -> None:
         """Close the line; again is fine."""
+        self._open = False
         if self._resources is not None:
             self._resources.close()
 

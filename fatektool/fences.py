@@ -12,6 +12,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from fatektool.errors import FrameError, NoAnswer, PlcRefused, TransportError
+from fatektool.protocol.codec import require_station
 from fatektool.protocol.commands import Command, Loopback
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
     from fatektool.errors import LineError
     from fatektool.link import Link
-    from fatektool.protocol.commands import Request
+from fatektool.protocol.commands import Request
 
 
 class Fences:
@@ -40,6 +41,19 @@ class Fences:
     def inherit_doubt(self) -> None:
         """Somebody before left an answer on its way: to what question, nobody knows."""
         self._link.hearing.doubt = self._inherited = True
+
+    def turn_to(self, station: int) -> None:
+        """Ask another station from now on, on the same line.
+
+        Raises:
+            UsageError: no PLC can have this station.
+        """
+        link = self._link
+        require_station(link.codec, station)
+        link.station = station
+        link.answered.clear()
+        if link.hearing.turn_to(station):
+            self.inherit_doubt()
 
     def note_asked(self, request: Request[Any]) -> None:
         """Remember a question whose answer may come at any time, until the next fence."""

@@ -53,8 +53,24 @@ class Hearing:
         self.words = ""
         self._transport = transport
         self._station = station
+        self._doubtful: set[int] = set()  # other stations, whose late answers may still come
         self._owed = 0  # requests without an answer since the last fence: as many may still come
         self._given_up = 0  # those of them whose answer was not even waited for
+
+    def turn_to(self, station: int) -> bool:
+        """Wait for another station's answers from now on; True if an earlier one of it may still come.
+
+        Answers bear their station's number, so those of the station before matter when it is asked again.
+        """
+        if self.doubt:
+            self._doubtful.add(self._station)
+        self._station = station
+        self._owed = self._given_up = 0
+        self.patience = 1
+        known = station in self._doubtful
+        self._doubtful.discard(station)
+        self.doubt = self.doubt or known
+        return known
 
     def fenced(self) -> None:
         """A fence came down: nothing can be on its way any more."""

@@ -44,6 +44,7 @@ JOBS: Final[dict[str, dict[str, Entry]]] = {
         "ports": Entry("ports", "List the serial ports of this computer."),
         "link": Entry("link", "The PLC's own ports; its CLINK and M-BUS tables."),
         "decode": Entry("decode", "Explain frames, given as hex or from a trace."),
+        "encode": Entry("encode", "Build the frame of a command, in hex; no PLC."),
         "modbus": Entry("modbus", "What Modbus calls the elements, both ways; no PLC."),
     },
     "Many PLCs": {

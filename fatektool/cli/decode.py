@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from fatektool.cli.frame_view import explanation_document, field_lines
 from fatektool.cli.options import PROTOCOLS, voice_options
 from fatektool.errors import DataError, UsageError
 from fatektool.program.files import read_bounded
@@ -116,21 +117,7 @@ def _document(record: TraceRecord | None, explanation: Explanation) -> dict[str,
     return {
         "time": record.time if record else None,
         "direction": record.direction if record else None,
-        "role": explanation.role.value,
-        "raw": explanation.raw.hex().upper(),
-        "station": explanation.station,
-        "command": None if explanation.command is None else f"{explanation.command:02X}",
-        "checksum_ok": explanation.checksum_ok,
-        "fault": explanation.fault,
-        "fields": [
-            {
-                "name": field.name,
-                "raw": field.raw.hex().upper(),
-                "text": _text(field.raw),
-                "meaning": field.meaning,
-            }
-            for field in explanation.fields
-        ],
+        **explanation_document(explanation),
     }
 
 
@@ -141,14 +128,4 @@ def _lines(found: Iterable[tuple[TraceRecord | None, Explanation]], *, binary: b
         when = f"{record.time} {record.direction}  " if record else ""
         size = len(explanation.raw)
         yield f"{when}{explanation.role.value}, {size} bytes"
-        for field in explanation.fields:
-            shown = field.raw.hex(" ").upper() if binary else _text(field.raw)
-            cut = shown if len(shown) <= 24 else f"{shown[:20]}… ({len(field.raw)})"
-            yield f"  {field.name:<16}  {cut:<24}  {field.meaning}".rstrip()
-        if explanation.fault:
-            yield f"  fault: {explanation.fault}"
-
-
-def _text(raw: bytes) -> str:
-    """Bytes as the characters they are, others as <hex>."""
-    return "".join(chr(byte) if 0x20 < byte < 0x7F else f"<{byte:02X}>" for byte in raw)
+        yield from field_lines(explanation, binary=binary)

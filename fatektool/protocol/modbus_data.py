@@ -55,7 +55,7 @@ MEANINGS: Final = {
     0x06: "the PLC is busy",
     0x08: "a parity error in the PLC's memory",
 }
-_GATEWAY: Final = {0x0A: "it has no way there", 0x0B: "nothing came back from there"}
+GATEWAY: Final = {0x0A: "it has no way there", 0x0B: "nothing came back from there"}
 _NEXT: Final = {
     0x01: "is it a FATEK PLC? Others have other functions",
     0x02: "'fatektool modbus map' shows the standard map; a PLC with R3968 = A55AH needs --modbus-map",
@@ -241,8 +241,8 @@ def _joined(parts: Sequence[int], each: int) -> tuple[int, ...]:
 
 def _refusal(request: Request[Any], said: Pdu) -> PlcRefused | TransportTimeout:
     code = said.exception
-    if code in _GATEWAY:
-        return TransportTimeout(f"the gateway says: {_GATEWAY[code]} (exception {code:02X})")
+    if code in GATEWAY:
+        return TransportTimeout(f"the gateway says: {GATEWAY[code]} (exception {code:02X})")
     meaning = MEANINGS.get(code, "a code that Modbus does not list")
     return PlcRefused(
         f"the PLC refused to {asked(request)} (Modbus function {said.function:02X}): exception {code:02X}, "

@@ -50,6 +50,7 @@ ANSWERS = """\
 0 link-table: link table show R0 --kind md0 -p PLC
 1 link-table: link table show R0 --kind mbus --check -p PLC
 0 decode: decode 02 30 31 34 30 43 37 03
+0 encode: encode 46 R12 3
 0 schemas: schema
 """
 

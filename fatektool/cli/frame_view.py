@@ -1,0 +1,46 @@
+"""A frame explained, as a document and as lines."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from fatektool.protocol.explain import Explanation
+
+
+def explanation_document(explanation: Explanation) -> dict[str, Any]:
+    """What a frame is, whom it is for, and its fields."""
+    return {
+        "role": explanation.role.value,
+        "raw": explanation.raw.hex().upper(),
+        "station": explanation.station,
+        "command": None if explanation.command is None else f"{explanation.command:02X}",
+        "checksum_ok": explanation.checksum_ok,
+        "fault": explanation.fault,
+        "fields": [
+            {
+                "name": field.name,
+                "raw": field.raw.hex().upper(),
+                "text": characters(field.raw),
+                "meaning": field.meaning,
+            }
+            for field in explanation.fields
+        ],
+    }
+
+
+def field_lines(explanation: Explanation, *, binary: bool) -> Iterator[str]:
+    """The fields, one a line, and what is wrong; ``binary`` shows bytes as hex."""
+    for field in explanation.fields:
+        shown = field.raw.hex(" ").upper() if binary else characters(field.raw)
+        cut = shown if len(shown) <= 24 else f"{shown[:20]}… ({len(field.raw)})"
+        yield f"  {field.name:<16}  {cut:<24}  {field.meaning}".rstrip()
+    if explanation.fault:
+        yield f"  fault: {explanation.fault}"
+
+
+def characters(raw: bytes) -> str:
+    """Bytes as the characters they are, others as <hex>."""
+    return "".join(chr(byte) if 0x20 < byte < 0x7F else f"<{byte:02X}>" for byte in raw)
