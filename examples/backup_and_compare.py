@@ -35,6 +35,8 @@ def main() -> int:
 
 
 if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
     try:
         sys.exit(main())
     except fatektool.FatektoolError as error:

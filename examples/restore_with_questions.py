@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 def agree(plan: RestorePlan, old_program: Path | None) -> bool:
     """Ask whatever must be asked on your machine; this one agrees to small changes alone."""
-    print(f"{len(plan.pages)} pages to write; the old program lies in {old_program}")
+    print(f"{len(plan.pages)} pages to write; the old program is saved in {old_program}")
     return len(plan.comparison.pages) < 100
 
 
@@ -38,13 +38,15 @@ def main() -> int:
                 safety_folder=file.parent,
             )
         except RestoreIncomplete as error:
-            print(f"half way: {error.details['pages_written']} hold the new program", file=sys.stderr)
+            print(f"not complete: {error.details['pages_written']} hold the new program", file=sys.stderr)
             raise
     print(f"{result.pages_written} pages written, PLC in {result.mode_after.upper()}")
     return 0
 
 
 if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
     try:
         sys.exit(main())
     except fatektool.FatektoolError as error:

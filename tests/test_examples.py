@@ -77,6 +77,14 @@ def test_restore_with_questions(tmp_path: Path) -> None:
     assert "0 pages written, PLC in RUN" in done.stdout
 
 
+@pytest.mark.parametrize("name", ["backup_and_compare.py", "restore_with_questions.py"])
+def test_words_that_are_missing(tmp_path: Path, name: str) -> None:
+    done = run(tmp_path, sys.executable, str(EXAMPLES / name), "sim:demo.state")
+    assert done.returncode == 1
+    assert f"Usage: python {name} TARGET" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
 def test_my_client(tmp_path: Path) -> None:
     script = str(EXAMPLES / "test_my_client.py")
     done = run(tmp_path, sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", script)

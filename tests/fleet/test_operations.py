@@ -1,4 +1,4 @@
-"""docs/operations.md gives what it shows; the examples that it names run, from cron, systemd and Ansible."""
+"""docs/operations.md gives what it shows; the examples that it names run"""
 
 from __future__ import annotations
 
@@ -12,12 +12,11 @@ import subprocess
 import sys
 import tomllib
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pytest
 
 from fatektool.inventory.entries import parse_inventory
-from tests.cli.house import NEW, OLD, served
 
 if TYPE_CHECKING:
     from tests.cli.house import Cli
@@ -171,42 +170,3 @@ def test_systemd(cli: Cli, plant: Hall, place: Path, monkeypatch: pytest.MonkeyP
     timer = unit("fatektool-fleet.timer")
     assert timer["Timer"]["OnCalendar"]
     assert timer["Install"]["WantedBy"] == "timers.target"
-
-
-@pytest.mark.skipif(
-    shutil.which("ansible-playbook", path=str(Path(sys.executable).parent)) is None
-    and not os.environ.get("CI"),
-    reason="no ansible-core here",
-)
-@pytest.mark.timeout(180)  # a process for each task and host
-def test_ansible(place: Path) -> None:
-    """The playbook, over local connections, on two gateways with a PLC each; one PLC more is not there."""
-    shutil.copytree(EXAMPLES / "ansible", place / "ansible")
-    with served(OLD) as one, served(NEW) as other:
-        (place / "fatek.toml").write_text(
-            f'[plc.press]\ntarget = "{one.target}"\ntags = ["gateway-1"]\n'
-            f'[plc.oven]\ntarget = "{other.target}"\ntags = ["gateway-2"]\n'
-            '[plc.gone]\ntarget = "tcp://127.0.0.1:1"\ntags = ["gateway-2"]\n'
-        )
-        extra: dict[str, Any] = {
-            "ansible_connection": "local",
-            "ansible_python_interpreter": sys.executable,
-            "fatek_folder": f"{place}/{{{{ inventory_hostname }}}}",
-            "fatek_inventory": place / "fatek.toml",
-            "fatek_histories": place / "histories",
-        }
-        options = " ".join(f"-e {shlex.quote(f'{key}={value}')}" for key, value in extra.items())
-        done = shell(
-            f"cd ansible && ansible-playbook -i hosts.ini backup.yml {options}",
-            ANSIBLE_HOME=str(place / "home"),
-            ANSIBLE_PIPELINING="1",
-            ANSIBLE_FORCE_COLOR="0",
-        )
-    assert done.returncode == 2, done.stdout + done.stderr
-    recap = re.findall(r"^(gateway-\d) +: ok=\d+ .*failed=(\d)", done.stdout, re.MULTILINE)
-    assert recap == [("gateway-1", "0"), ("gateway-2", "1")]
-    assert "cannot connect to 127.0.0.1 port 1" in done.stdout
-    for gateway, name in (("gateway-1", "press"), ("gateway-2", "oven")):
-        log = shell(f"fatektool history log --history histories/{gateway}/history")
-        assert log.returncode == 0, log.stderr
-        assert name in log.stdout
