@@ -37,7 +37,8 @@ if TYPE_CHECKING:
     from fatektool.jobs.verify import verify
     from fatektool.program.archive import Backup, load_backup, save_backup
     from fatektool.program.compare import compare
-    from fatektool.program.image import Header, Program
+    from fatektool.program.headers.header import Header
+    from fatektool.program.image import Program
     from fatektool.protocol.elements import Element
     from fatektool.protocol.frames import checksum, error_text, frame
 
@@ -45,7 +46,7 @@ _HOMES = {
     "Backup": "fatektool.program.archive",
     "Element": "fatektool.protocol.elements",
     "FatektoolError": "fatektool.errors",
-    "Header": "fatektool.program.image",
+    "Header": "fatektool.program.headers.header",
     "Plc": "fatektool.client",
     "Program": "fatektool.program.image",
     "backup": "fatektool.jobs.backup",

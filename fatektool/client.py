@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fatektool.batch import ask_all, tell_all
+from fatektool.batch import ask_all, ask_until_refused, tell_all
 from fatektool.errors import DataError, LineError, PlcError, PlcRefused
 from fatektool.protocol.commands import (
     DETAILED_BYTES,
@@ -235,6 +235,12 @@ class Plc:
             on_page: is called with the number of pages read so far.
         """
         return ask_all(self.link, [ReadPage(page) for page in pages], on_page)
+
+    def read_pages_until_refused(
+        self, pages: Sequence[int], on_page: Callable[[int], None] | None = None
+    ) -> tuple[list[bytes], PlcRefused | None]:
+        """The same up to the first page that is refused, and that refusal; None if all were given."""
+        return ask_until_refused(self.link, [ReadPage(page) for page in pages], on_page)
 
     def write_page(self, page: int, data: bytes) -> None:
         """50: one page of the program, 128 bytes."""

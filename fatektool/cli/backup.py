@@ -9,6 +9,7 @@ from pathlib import Path
 import click
 
 from fatektool.cli.documents import saved_document
+from fatektool.cli.image_words import warn_of_image
 from fatektool.cli.options import PATH, Connection, connection_options
 from fatektool.cli.output import Voice, table
 from fatektool.errors import FatektoolError, UsageError
@@ -55,7 +56,7 @@ def backup_command(
         duration_s = clock() - began
         counters = plc.link.counters
     voice.detail(f"line: {counters}")
-    warn_of_header(found, voice)
+    warn_of_image(found.program, voice)
     if path != STDOUT:
         save_backup(found, path, overwrite=force)
     if raw is not None:
@@ -68,7 +69,7 @@ def backup_command(
     size = f"{program.ladder_words} words, {len(program.pages)} pages"
     rows = [
         ("saved", path),
-        ("program", f"{program.header.signature or 'unknown'}, {size}"),
+        ("program", f"{program.header.text()}, {size}"),
         ("passes", f"{found.passes}, equal" if found.passes > 1 else "1, not compared"),
         ("sha256", program.sha256),
     ]
@@ -95,11 +96,3 @@ def require_raw_name(raw: Path | None, file: Path) -> None:
         raise UsageError("--raw -: standard output has other uses here, expected a file name")
     if raw is not None and os.path.realpath(raw) == os.path.realpath(file):
         raise UsageError(f"{raw} is named twice: expected another name for --raw")
-
-
-def warn_of_header(found: Backup, voice: Voice) -> None:
-    """Say what does not hold of a header that is kept nevertheless, or is odd."""
-    for fault in found.program.header_faults:
-        voice.warn(f"the program's header does not hold: {fault}")
-    if not found.program.header.filled:
-        voice.detail("the rest of the header page is not FF, as the paper has it")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from fatektool.program.image import PAGE_WORDS
+from fatektool.program.headers.header import PAGE_WORDS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

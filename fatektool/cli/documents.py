@@ -70,6 +70,8 @@ def _system(report: StatusReport) -> dict[str, Any] | None:
 
 def backup_summary(backup: Backup) -> dict[str, Any]:
     """What a backup holds, without its pages."""
+    from fatektool.cli.image_words import image_warnings  # not before there is a program
+
     source = backup.source
     return {
         "created": backup.created,
@@ -86,6 +88,7 @@ def backup_summary(backup: Backup) -> dict[str, Any]:
         "page_count": len(backup.program.pages),
         "passes": backup.passes,
         "sha256": backup.program.sha256,
+        "warnings": image_warnings(backup.program),
     }
 
 
@@ -115,6 +118,7 @@ def differences(comparison: Comparison) -> dict[str, Any]:
         "same": comparison.same,
         "a_ladder_words": comparison.a_ladder_words,
         "b_ladder_words": comparison.b_ladder_words,
+        "b_has_more_pages": comparison.b_has_more,
         "pages_differ": len(comparison.pages),
         "words_differ": comparison.word_count,
         "differences": [

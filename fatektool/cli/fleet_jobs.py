@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from fatektool.cli.differences import size_of
 from fatektool.cli.documents import saved_document, status_document, verify_document
+from fatektool.cli.image_words import warn_of_image
 from fatektool.cli.options import connection_of
 from fatektool.errors import DataError, PlcError, UsageError
 from fatektool.jobs.backup import backup
@@ -98,8 +99,7 @@ def backup_work(
         with opened(entry, turn, voice, Command.READ_PAGE) as plc:
             found = backup(plc, single_pass=single_pass, any_header=any_header, progress=turn.progress)
         require_ladder(found.program)
-        for fault in found.program.header_faults:
-            voice.warn(f"{entry.name}: the program's header does not hold: {fault}")
+        warn_of_image(found.program, voice.of(entry.name))
         turn.progress("saving", 0, 0)
         changed = None
         path = None if folder is None else folder / f"{entry.name}.json"
@@ -110,7 +110,7 @@ def backup_work(
             changed = _record(history, entry.name, found, voice)
         document = saved_document(found, path or kept_in or Path(), time.monotonic() - began)
         said = {None: "first backup", True: "CHANGED", False: "unchanged"}[changed]
-        words = f"{said}, {found.program.header.signature or 'unknown'}, {found.program.ladder_words} words"
+        words = f"{said}, {found.program.header.text()}, {found.program.ladder_words} words"
         return Done(0, document, words, path or kept_in, changed)
 
     return work

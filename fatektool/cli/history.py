@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from fatektool.cli.backup import STDOUT, warn_of_header
+from fatektool.cli.backup import STDOUT
 from fatektool.cli.diff import show_difference
 from fatektool.cli.history_documents import (
     check_document,
@@ -22,6 +22,7 @@ from fatektool.cli.history_documents import (
     record_rows,
     show_document,
 )
+from fatektool.cli.image_words import warn_of_image
 from fatektool.cli.inspect import backup_rows
 from fatektool.cli.options import PATH, Seconds, voice_options
 from fatektool.cli.output import table
@@ -135,7 +136,7 @@ def log_command(name: str | None, folder: Path, voice: Voice, *, limit: int | No
 def show_command(which: str, folder: Path, voice: Voice) -> None:
     """Show what the history holds of a PLC, now or at a revision, as 'inspect' does."""
     found = History(folder).show(*_parted(which))
-    warn_of_header(found.backup, voice)
+    warn_of_image(found.backup.program, voice)
     rows = [
         ("recorded", f"{utc(found.commit.time)}: {found.commit.subject}"),
         *backup_rows(found.backup, found.label),

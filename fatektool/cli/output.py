@@ -203,4 +203,4 @@ class Bar:
         if task is None:
             task = self._tasks[phase] = self._rich.add_task(phase, total=total, rate="")
         speed = self._rich.tasks[list(self._tasks).index(phase)].speed
-        self._rich.update(task, completed=done, rate=f"{speed:.1f}/s" if speed else "")
+        self._rich.update(task, completed=done, total=total, rate=f"{speed:.1f}/s" if speed else "")

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import click
 from click.core import ParameterSource
 
-from fatektool.cli.backup import warn_of_header
 from fatektool.cli.documents import restore_document
+from fatektool.cli.image_words import warn_of_image
 from fatektool.cli.options import PATH, Connection, connection_options, yes_option
 from fatektool.cli.output import Bar, Voice, can_ask, table
 from fatektool.errors import RestoreIncomplete, UsageError
@@ -79,7 +79,7 @@ def restore_command(
         clock = plc.link.transport.clock
         began = clock()
         plan = plan_restore(plc, backup, options, progress=bar.update)
-        warn_of_header(backup, voice)
+        warn_of_image(backup.program, voice)
         for warning in plan.warnings:
             voice.warn(warning)
         if dry_run:

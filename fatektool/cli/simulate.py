@@ -54,6 +54,9 @@ _DEFAULT_MODELS = ", ".join(f"{spoken.model} with {name}" for name, spoken in SL
     show_default=True,
     help="Which demonstration program, without BACKUP.",
 )
+@click.option(
+    "--swap-program", is_flag=True, help="Exchange the bytes of each word of an FBs demonstration program."
+)
 @click.option("--state", type=PATH, metavar="FILE", help="Keep the PLCs' memory in FILE.")
 @click.option(
     "--set", "flags", multiple=True, type=click.Choice(FLAGS), help="A state of the PLCs; repeat for more."
@@ -107,6 +110,7 @@ def simulate_command(
     ladder_words: int | None,
     program: Path | None,
     program_seed: int,
+    swap_program: bool,
     state: Path | None,
     flags: tuple[str, ...],
     baud: int | None,
@@ -163,6 +167,7 @@ def simulate_command(
         protocol=protocol,
         **wanted,
         program_seed=program_seed,
+        program_swapped=swap_program,
         program_commands=not no_program_commands,
         error_character=not no_error_character,
         state=state,

@@ -36,6 +36,9 @@ def verify_command(connection: Connection, voice: Voice, *, file: Path, report: 
         found = verify(plc, backup.program, progress=bar.update)
         document = verify_document(plc, file, backup.program, found, clock() - began)
     same = f"same: the PLC's program is the one in {file}, {len(backup.program.pages)} pages"
+    if found.b_has_more:
+        count = len(backup.program.pages)
+        voice.warn(f"the PLC has more than the {count} pages of {file}: page {count} and on are not compared")
     voice.show(document, difference_lines(found, same, "file", "PLC"))
     if report is not None:
         from fatektool.report.program import verify_report

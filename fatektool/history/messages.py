@@ -62,7 +62,7 @@ def message(first_line: str, found: Comparison | None, old: Backup | None, new: 
         rows += [("pages", ranges(found.page_numbers)), ("sha256", f"{old.program.sha256} before")]
     rows += [
         ("sha256", f"{new.program.sha256}{' after' if old is not None else ''}"),
-        ("program", f"{new.program.header.signature or 'unknown'}, {new.program.ladder_words} words"),
+        ("program", f"{new.program.header.text()}, {new.program.ladder_words} words"),
         ("source", f"station {source.station} on {source.target}, {source.protocol}{line}"),
         ("read", f"{new.created} by {new.tool}"),
     ]

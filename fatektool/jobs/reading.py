@@ -6,6 +6,9 @@ Two passes must agree. Where they do not, the line's behaviour tells why:
   the same PLC any more. That is said, and nothing is kept.
 - the line had errors: one may have slipped through its 8-bit checksum. Another pass is read, until two in a
   row agree.
+
+A PLC may refuse pages that its ladder size asks for: past its end (error A or 2). What it gave is its whole
+program if the header announces no more, or if the page that it refuses is the very last.
 """
 
 from __future__ import annotations
@@ -13,10 +16,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from fatektool.errors import DataError, LineError
+from fatektool.errors import DataError, LineError, PlcRefused
 from fatektool.jobs.progress import Progress, no_progress
 from fatektool.program.compare import compare
-from fatektool.program.image import Program, page_count, ranges
+from fatektool.program.image import Program, is_whole, page_count, ranges
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -25,6 +28,8 @@ if TYPE_CHECKING:
     from fatektool.protocol.status import DetailedStatus
 
 MOST_PASSES: Final = 5
+PAST_THE_END: Final = {0x2, 0xA}
+"""The error codes of a page that the PLC does not have: illegal value, illegal address."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,10 +74,47 @@ def read_program(
             "the PLC's detailed status (53) tells a ladder size of 0 words: there is nothing to read",
             hint="check the model with 'fatektool status'",
         )
-    total = page_count(words)
+    return Reading(status, Program(words, tuple(read_all_pages(plc, words, phase, progress))), 1)
+
+
+def read_all_pages(
+    plc: Plc, words: int, phase: str, progress: Progress, count: int | None = None
+) -> list[bytes]:
+    """Read the pages that a PLC has.
+
+    Args:
+        plc: the PLC.
+        words: the ladder size that it says it has.
+        phase: what the progress calls it.
+        progress: told of each page.
+        count: read no more than this many; None for all that the ladder size asks for.
+
+    Raises:
+        LineError: a page found no answer.
+        PlcRefused: it refuses a page before its program's end.
+    """
+    last = page_count(words) - 1
+    total = last + 1 if count is None else count
+
     progress(phase, 0, total)
-    pages = plc.read_pages(range(total), lambda done: progress(phase, done, total))
-    return Reading(status, Program(words, tuple(pages)), 1)
+    pages, refusal = plc.read_pages_until_refused(range(total), lambda done: progress(phase, done, total))
+    if refusal is not None:
+        past_the_end = refusal.code in PAST_THE_END and is_whole(pages, words)
+        if not past_the_end or gives_page(plc, last):
+            raise refusal
+        progress(phase, len(pages), len(pages))
+    return pages
+
+
+def gives_page(plc: Plc, page: int) -> bool:
+    """True if the PLC has this page."""
+    try:
+        plc.read_page(page)
+    except PlcRefused as refused:
+        if refused.code not in PAST_THE_END:
+            raise
+        return False
+    return True
 
 
 def read_program_twice(

@@ -21,11 +21,13 @@ from typing import TYPE_CHECKING
 
 from fatektool.errors import DataError, LineError, PlcError, PlcNotReady, UsageError
 from fatektool.jobs.backup import backup_of
+from fatektool.jobs.fit import require_kin, require_size
 from fatektool.jobs.progress import Progress, no_progress
 from fatektool.jobs.reading import Reading, read_program, read_program_twice
 from fatektool.jobs.rewrite import Rewrite
 from fatektool.jobs.safety import find_way_back, save_safety_backup
-from fatektool.program.compare import Comparison, compare
+from fatektool.program.compare import Comparison, compare_images
+from fatektool.program.image import ranges
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -119,7 +121,7 @@ def plan_restore(
             "restore another backup; or --any-header, if the PLC had this very header when it was backed up"
         )
     status = plc.detailed_status()
-    _require_fit(backup.program, status.system.ladder_words)
+    require_size(backup.program, status.system.ladder_words)
     if status.flags.rom_pack:
         raise PlcNotReady(
             "a ROM pack is fitted: the PLC takes no program over the link",
@@ -131,13 +133,24 @@ def plan_restore(
             hint="make the machine safe, then add --stop",
         )
     reading = _read_present(plc, options, progress)
-    _require_fit(backup.program, reading.program.ladder_words)  # it may be another PLC by now
-    comparison = compare(backup.program, reading.program)
-    every = range(len(backup.program.pages))
+    present = reading.program
+    require_size(backup.program, present.ladder_words)  # it may be another PLC by now
+    require_kin(backup.program, present, any_header=options.any_header)
+    count = len(backup.program.pages)
+    comparison = compare_images(
+        backup.program,
+        present.ladder_words,
+        present.pages[:count],
+        b_has_more=len(present.pages) > count,
+    )
+    every = range(count)
     pages = tuple(comparison.page_numbers if options.changed_only else every) if comparison.pages else ()
     warnings = []
     if status.flags.id_set:
         warnings.append("the PLC has an ID set: a program with another ID loads, but will not RUN (error 6)")
+    if comparison.b_has_more:
+        left = ranges(range(count, len(present.pages)))
+        warnings.append(f"the PLC has more pages than the file, {left}: they stay as they are")
     return RestorePlan(
         backup.program,
         backup_of(plc, reading),
@@ -147,17 +160,6 @@ def plan_restore(
         tuple(warnings),
         options,
     )
-
-
-def _require_fit(program: Program, words: int) -> None:
-    if words != program.ladder_words:
-        raise DataError(
-            f"the program does not fit this PLC: expected a ladder size of {words} words, "
-            f"got {program.ladder_words} in the file",
-            hint="restore a backup of this PLC, or of one of the same model",
-            plc_ladder_words=words,
-            file_ladder_words=program.ladder_words,
-        )
 
 
 def _read_present(plc: Plc, options: RestoreOptions, progress: Progress) -> Reading:

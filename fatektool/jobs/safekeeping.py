@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import DataError, UsageError
 from fatektool.program.archive import load_backup
+from fatektool.program.headers.header import PAGE_BYTES
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -26,7 +27,7 @@ def require_ladder(program: Program) -> None:
     Raises:
         DataError: there is no ladder in it.
     """
-    ladder = program.data[len(program.pages[0]) :]
+    ladder = program.data[program.header.code_page * PAGE_BYTES :]
     if ladder == ladder[:1] * len(ladder):
         raise DataError(
             f"the program is empty: every byte of its ladder is {ladder[0]:02X}",

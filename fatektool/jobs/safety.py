@@ -10,6 +10,7 @@ from whose pages and FILE's all present pages come, and kept as the way back.
 from __future__ import annotations
 
 import os
+from itertools import zip_longest
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import FatektoolError
@@ -66,7 +67,9 @@ def find_way_back(present: Program, wanted: Program, station: int, file: Path, f
             continue  # somebody's damaged file is no way back, and no reason to stop
         if old == present or old.ladder_words != present.ladder_words:
             continue
-        pages = zip(present.pages, old.pages, wanted.pages, strict=True)
+        if len(old.pages) != len(present.pages):
+            continue
+        pages = zip_longest(present.pages, old.pages, wanted.pages)
         if all(page in {before, after} for page, before, after in pages):
             return path
     return None

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fatektool.jobs.progress import Progress, no_progress
-from fatektool.jobs.reading import read_program
-from fatektool.program.compare import Comparison, compare
+from fatektool.jobs.reading import gives_page, read_all_pages
+from fatektool.program.compare import Comparison, compare_images
 
 if TYPE_CHECKING:
     from fatektool.client import Plc
@@ -17,7 +16,8 @@ if TYPE_CHECKING:
 def verify(plc: Plc, program: Program, *, progress: Progress = no_progress) -> Comparison:
     """Compare a program (``a``) with the one in the PLC (``b``).
 
-    What seems to differ is read again before it is said, so that no error on the line is taken for a change.
+    As many pages are read as ``program`` has. What seems to differ is read again before it is said, so that
+    no error on the line is taken for a change.
 
     Args:
         plc: the PLC; it may run.
@@ -34,13 +34,14 @@ def verify(plc: Plc, program: Program, *, progress: Progress = no_progress) -> C
     size = status.system.ladder_words
     if size != program.ladder_words:
         return Comparison(program.ladder_words, size, ())
-    found = read_program(plc, "verifying", progress, status).program
-    different = compare(program, found).page_numbers
-    if different:
-        pages = list(found.pages)
-        total = len(different)
-        again = plc.read_pages(different, lambda done: progress("reading again", done, total))
-        for number, page in zip(different, again, strict=True):
-            pages[number] = page
-        found = replace(found, pages=tuple(pages))
-    return compare(program, found)
+    count = len(program.pages)
+    found = read_all_pages(plc, size, "verifying", progress, count)
+    different = compare_images(program, size, found).page_numbers
+    again = [number for number in different if number < len(found)]
+    if again:
+        total = len(again)
+        pages = plc.read_pages(again, lambda done: progress("reading again", done, total))
+        for number, page in zip(again, pages, strict=True):
+            found[number] = page
+    has_more = count < program.pages_asked_for and len(found) == count and gives_page(plc, count)
+    return compare_images(program, size, found, b_has_more=has_more)

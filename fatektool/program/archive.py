@@ -3,8 +3,11 @@
 Keys in this order::
 
     schema created tool source{target station protocol line} plc{status system}
-    header{valid signature ladder_words} ladder_words page_count passes sha256 pages[256 hex digits, …]
+    header{valid family signature byte_order ladder_words code_words capacity_words
+           checksum{stored computed valid} sums{settings labels ror}}
+    ladder_words page_count passes sha256 pages[256 hex digits, …]
 
+A file from before there were families has ``valid``, ``signature`` and ``ladder_words`` alone in ``header``.
 ``sha256`` is of all pages' bytes in order. Whatever reads a backup gets it checked to the last byte: a file
 that does not hold is refused, naming what and where, before anything is done with it.
 """
@@ -19,7 +22,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.errors import DataError
 from fatektool.program.files import read_bounded, write_whole
-from fatektool.program.image import PAGE_BYTES, Program, page_count
+from fatektool.program.headers.families import short_document
+from fatektool.program.headers.header import PAGE_BYTES
+from fatektool.program.image import Program, is_whole, page_count
 from fatektool.program.plc_record import fault_of
 from fatektool.program.strict_json import read_json
 
@@ -72,12 +77,7 @@ class Backup:
     @property
     def header_document(self) -> dict[str, Any]:
         """The header as the file has it."""
-        header = self.program.header
-        return {
-            "valid": not self.program.header_faults,
-            "signature": header.signature,
-            "ladder_words": header.ladder_words,
-        }
+        return self.program.header.document()
 
     def to_bytes(self) -> bytes:
         """The file's bytes."""
@@ -174,7 +174,8 @@ class _Reader:
         )
         self.same("sha256", program.sha256, self.text(document, "sha256").lower())
         header = self.part(document, "header")
-        for key, value in found.header_document.items():
+        short = short_document(program.pages[0], ladder_words)
+        for key, value in (short if header.keys() == short.keys() else found.header_document).items():
             self.same(f"header.{key} (page 0)", value, header.get(key))
         if not _TIME.fullmatch(found.created):
             raise self.fault("created: expected a UTC time such as 2026-11-22T03:15:00Z", found.created)
@@ -188,16 +189,17 @@ class _Reader:
         pages = document.get("pages")
         if not isinstance(pages, list):
             raise self.fault("pages: expected an array", pages)
-        expected = page_count(ladder_words)
-        self.same("page_count", expected, self.number(document, "page_count", 0, 1 << 32))
-        if len(pages) != expected:
-            raise self.fault(f"pages: expected {expected} for {ladder_words} words", len(pages))
         for number, page in enumerate(pages):
             if not isinstance(page, str) or not _PAGE.fullmatch(page):
                 error = self.fault(f"page {number}: expected {2 * PAGE_BYTES} hex digits", page)
                 error.details["page"] = number
                 raise error
-        return tuple(bytes.fromhex(page) for page in pages)
+        found = tuple(bytes.fromhex(page) for page in pages)
+        if not is_whole(found, ladder_words):
+            expected = page_count(ladder_words)
+            raise self.fault(f"pages: expected {expected} for {ladder_words} words", len(pages))
+        self.same("page_count", len(pages), self.number(document, "page_count", 0, 1 << 32))
+        return found
 
     def source(self, part: dict[str, Any]) -> Source:
         line = part.get("line")

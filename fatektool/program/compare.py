@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import struct
 from dataclasses import dataclass
+from itertools import zip_longest
 from operator import ne
 from typing import TYPE_CHECKING
 
-from fatektool.program.image import PAGE_WORDS
+from fatektool.program.headers.header import PAGE_WORDS
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from fatektool.program.image import Program
 
 
@@ -61,15 +64,17 @@ class Comparison:
         a_ladder_words: ladder size of the first.
         b_ladder_words: ladder size of the second.
         pages: the pages that differ, in order.
+        b_has_more: True if the second has pages past the first's last, which are not compared.
     """
 
     a_ladder_words: int
     b_ladder_words: int
     pages: tuple[PageDifference, ...]
+    b_has_more: bool = False
 
     @property
     def same(self) -> bool:
-        """True if the two are the same to the byte."""
+        """True if all that is compared is the same to the byte."""
         return not self.pages and self.a_ladder_words == self.b_ladder_words
 
     @property
@@ -85,13 +90,26 @@ class Comparison:
 
 def compare(a: Program, b: Program) -> Comparison:
     """Compare two programs, page by page."""
-    pages = []
-    for number in range(max(len(a.pages), len(b.pages))):
-        ours = a.pages[number] if number < len(a.pages) else None
-        theirs = b.pages[number] if number < len(b.pages) else None
-        if ours != theirs:
-            pages.append(PageDifference(number, ours, theirs))
-    return Comparison(a.ladder_words, b.ladder_words, tuple(pages))
+    return compare_images(a, b.ladder_words, b.pages)
+
+
+def compare_images(
+    a: Program, b_ladder_words: int, b_pages: Sequence[bytes], *, b_has_more: bool = False
+) -> Comparison:
+    """Compare a program with the pages of another, which need not be all of it.
+
+    Args:
+        a: the first.
+        b_ladder_words: ladder size of the second.
+        b_pages: its pages, 128 bytes each.
+        b_has_more: see ``Comparison``.
+    """
+    pages = tuple(
+        PageDifference(number, ours, theirs)
+        for number, (ours, theirs) in enumerate(zip_longest(a.pages, b_pages))
+        if ours != theirs
+    )
+    return Comparison(a.ladder_words, b_ladder_words, pages, b_has_more)
 
 
 def compare_pages(a: bytes, b: bytes) -> tuple[WordDifference, ...]:

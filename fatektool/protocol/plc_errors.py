@@ -37,8 +37,8 @@ _NEXT: Final = {
 
 PROGRAM_COMMANDS: Final = {Command.READ_PAGE, Command.WRITE_PAGE}
 PROGRAM_REFUSED: Final = (
-    "this PLC may not offer its program over the link (the FBs papers no longer list 4F and 50): "
-    "use the vendor's program, or check for a password"
+    "this PLC may not offer its program over the link: the FBs papers list neither 4F nor 50, and a password "
+    "may be set; what stays is the engineer's project file, from the vendor's program"
 )
 
 
@@ -51,7 +51,7 @@ def refusal(code: int, command: int, asked: str) -> PlcRefused:
         asked: what was asked, in words: ``read program page 5``.
     """
     hint = _NEXT.get(code)
-    if code in {0x2, 0x4} and command in PROGRAM_COMMANDS:
+    if code in {0x2, 0x4, 0xA} and command in PROGRAM_COMMANDS:
         hint = PROGRAM_REFUSED
     meaning = MEANINGS.get(code, "a code that no paper lists")
     return PlcRefused(

@@ -9,7 +9,8 @@ from __future__ import annotations
 import struct
 from typing import TYPE_CHECKING, Any, Final
 
-from fatektool.program.image import PAGE_WORDS, page_count
+from fatektool.program.headers.header import PAGE_WORDS
+from fatektool.program.image import page_count
 from fatektool.report.markup import DASH, Html, counted, figure, table, tag, when
 from fatektool.report.page import Report, Verdict, code, note, render, section
 from fatektool.report.page_map import page_map
@@ -86,14 +87,15 @@ def _report(
         ("Pages that differ", figure(document["pages_differ"])),
         ("Words that differ", figure(document["words_differ"])),
     ]
-    sections = [_map(document)]
+    pages = _pages(document, programs)
+    sections = [_map(document, pages)]
     if document["differences"]:
         sections += [_changes(document, sides), _words(document, programs, sides)]
     return render(
         Report(
             title,
             what,
-            _verdict(document, sides),
+            _verdict(document, sides, pages),
             [*facts, *sized, *counts],
             sections,
             document["schema"],
@@ -102,34 +104,40 @@ def _report(
     )
 
 
-def _verdict(document: Mapping[str, Any], sides: tuple[str, str]) -> Verdict:
+def _verdict(document: Mapping[str, Any], sides: tuple[str, str], pages: int) -> Verdict:
     if document["same"]:
-        return Verdict(
-            "Same", f"The two programs are equal, all {_pages(document)} pages of them.", good=True
-        )
+        said = f"The two programs are equal, all {pages} pages of them."
+        if document["b_has_more_pages"]:
+            said = f"All {pages} pages of the {sides[0]} are equal. The {sides[1]} has more."
+        return Verdict("Same", said, good=True)
     sizes = document["a_ladder_words"], document["b_ladder_words"]
-    said = []
+    parts = []
     if sizes[0] != sizes[1]:
-        said.append(f"The ladder size is {sizes[0]} words ({sides[0]}) and {sizes[1]} words ({sides[1]}).")
+        parts.append(f"The ladder size is {sizes[0]} words ({sides[0]}) and {sizes[1]} words ({sides[1]}).")
     if document["differences"]:
         words = counted(document["words_differ"], "word")
-        said.append(f"{words} in {counted(document['pages_differ'], 'page')} of {_pages(document)}.")
-    return Verdict("Different", " ".join(said), good=False)
+        parts.append(f"{words} in {counted(document['pages_differ'], 'page')} of {pages}.")
+    return Verdict("Different", " ".join(parts), good=False)
 
 
-def _pages(document: Mapping[str, Any]) -> int:
-    return page_count(max(document["a_ladder_words"], document["b_ladder_words"]))
+def _pages(document: Mapping[str, Any], programs: tuple[Program, Program | None]) -> int:
+    """How many pages the larger of the two has."""
+    a, b = programs
+    if b is not None:
+        return max(len(a.pages), len(b.pages))
+    sizes = document["a_ladder_words"], document["b_ladder_words"]
+    return len(a.pages) if sizes[0] == sizes[1] else page_count(max(sizes))
 
 
-def _map(document: Mapping[str, Any]) -> Html:
+def _map(document: Mapping[str, Any], pages: int) -> Html:
     if not document["differences"] and not document["same"]:
         return section(
             "Map of the pages",
             note("The sizes differ: the PLC's pages were not read, as they cannot be the ones on file."),
         )
     changed = {page["page"]: len(page["words"]) or None for page in document["differences"]}
-    said = "Page 0 is the program's header. A page is 64 words."
-    drawn = page_map("map", "The program's pages", _pages(document), changed)
+    said = "The program's header comes first. A page is 64 words."
+    drawn = page_map("map", "The program's pages", pages, changed)
     return section("Map of the pages", tag("p", said), tag("figure", drawn))
 
 

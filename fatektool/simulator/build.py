@@ -23,7 +23,7 @@ from fatektool.simulator.faults import DEFAULT_SLOW_S, Faults, parse_faults
 from fatektool.simulator.line import BITS_PER_CHAR, PIECE_S, WHOLE_ANSWERS, SimulatedLine
 from fatektool.simulator.models import DEFAULT_MODEL, MAX_LADDER_WORDS, MODELS, PAGE_BYTES, WORDS_PER_PAGE
 from fatektool.simulator.plc import MAX_STATION, SimulatedPlc
-from fatektool.simulator.program_image import demonstration_program
+from fatektool.simulator.programs import program_of
 from fatektool.simulator.slaves import DEFAULT_PROTOCOL, SLAVES
 from fatektool.simulator.state import StateFile
 
@@ -94,6 +94,7 @@ def build_plcs(
     ladder_words: int | None = None,
     program: Sequence[bytes] | None = None,
     program_seed: int = 1,
+    program_swapped: bool = False,
     program_commands: bool = True,
 ) -> dict[int, SimulatedPlc]:
     """New PLCs, one a station, all with the same program.
@@ -104,23 +105,16 @@ def build_plcs(
         ladder_words: another size of the program memory; by default that of ``program`` or the model.
         program: pages 0..N; by default a demonstration program.
         program_seed: varies the demonstration program.
+        program_swapped: exchange the bytes of each word of an FBs demonstration program.
         program_commands: False for PLCs that refuse to have their program read or written.
     """
-    chosen = _model(model or DEFAULT_MODEL)
-    pages = None if program is None else list(program)
-    if ladder_words is None and pages is not None:
-        ladder_words = _ladder_words(pages, chosen)
-    if ladder_words is not None:
-        if not 1 <= ladder_words <= MAX_LADDER_WORDS:
-            raise UsageError(f"a ladder has 1 to {MAX_LADDER_WORDS} words, not {ladder_words}")
-        chosen = replace(chosen, ladder_words=ladder_words)
-    if pages is None:
-        pages = demonstration_program(chosen.ladder_words, seed=program_seed)
-    if len(pages) != chosen.page_count or any(len(page) != PAGE_BYTES for page in pages):
-        raise DataError(
-            f"the program has {len(pages)} pages; a ladder of {chosen.ladder_words} words"
-            f" has {chosen.page_count} of {PAGE_BYTES} bytes each"
-        )
+    chosen, pages = _with_program(
+        _model(model or DEFAULT_MODEL),
+        None if program is None else list(program),
+        ladder_words,
+        program_seed,
+        swapped=program_swapped,
+    )
     plcs: dict[int, SimulatedPlc] = {}
     for station in stations:
         if not 1 <= station <= MAX_STATION:
@@ -141,6 +135,7 @@ def build_simulation(
     ladder_words: int | None = None,
     program: Sequence[bytes] | None = None,
     program_seed: int = 1,
+    program_swapped: bool = False,
     program_commands: bool = True,
     error_character: bool = True,
     state: str | os.PathLike[str] | None = None,
@@ -161,6 +156,7 @@ def build_simulation(
         ladder_words: see ``build_plcs``.
         program: see ``build_plcs``.
         program_seed: see ``build_plcs``.
+        program_swapped: see ``build_plcs``.
         program_commands: see ``build_plcs``.
         error_character: see ``FaconSlave``.
         state: keeps the memory in this file; it is made if it is not there.
@@ -191,6 +187,7 @@ def build_simulation(
             ladder_words=ladder_words,
             program=program,
             program_seed=program_seed,
+            program_swapped=program_swapped,
             program_commands=program_commands,
         )
     else:
@@ -229,6 +226,28 @@ def build_line(
     ).line()
 
 
+def _with_program(
+    chosen: Model, pages: list[bytes] | None, ladder_words: int | None, seed: int, *, swapped: bool
+) -> tuple[Model, list[bytes]]:
+    """The model with the ladder size and the number of pages that its program asks for, and the program."""
+    if ladder_words is None and pages is not None:
+        ladder_words = _ladder_words(pages, chosen)
+    if ladder_words is not None:
+        if not 1 <= ladder_words <= MAX_LADDER_WORDS:
+            raise UsageError(f"a ladder has 1 to {MAX_LADDER_WORDS} words, not {ladder_words}")
+        chosen = replace(chosen, ladder_words=ladder_words)
+    if pages is None:
+        pages = program_of(chosen, seed=seed, swapped=swapped)
+    elif len(pages) != chosen.page_count and _may_end_early(pages, chosen.ladder_words):
+        chosen = replace(chosen, pages=len(pages))
+    if len(pages) != chosen.page_count or any(len(page) != PAGE_BYTES for page in pages):
+        raise DataError(
+            f"the program has {len(pages)} pages; a ladder of {chosen.ladder_words} words"
+            f" has {chosen.page_count} of {PAGE_BYTES} bytes each"
+        )
+    return chosen, pages
+
+
 def _model(name: str) -> Model:
     model = MODELS.get(name.lower())
     if model is None:
@@ -243,6 +262,16 @@ def _ladder_words(pages: Sequence[bytes], model: Model) -> int:
         if words and -(-words // WORDS_PER_PAGE) + 1 == len(pages):
             return words
     return max(1, (len(pages) - 1) * WORDS_PER_PAGE)
+
+
+def _may_end_early(pages: Sequence[bytes], ladder_words: int) -> bool:
+    """True for a program of a PLC that refused the pages past its end, and for one that gave one more."""
+    if not pages:
+        return False
+    most = -(-ladder_words // WORDS_PER_PAGE) + 1
+    if pages[0][:4] in {b"FBS4", b"BF4S"}:
+        return len(pages) <= most
+    return len(pages) == most or (len(pages) == most - 1 and pages[0][4:6] == ladder_words.to_bytes(2, "big"))
 
 
 def _checked(

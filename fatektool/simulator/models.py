@@ -1,10 +1,14 @@
 """The PLCs that can be simulated: what each says about itself, and how much memory it has.
 
 The figures of ``fbe-28mc`` are those of the worked example of the FACON paper (section 4.2, command
-53), the ones of ``fbs-20mc`` were read from a unit of OS 4.0. The others share them, but for what
-their name says: main unit, points and ladder size. Brief status byte 2 follows the table of command
-40; an FBs answers 40H there, which is not in that table. The M-series paper gives no sizes: ``m-series`` has
-those of an FBs, with its file registers F.
+53), the ones of ``fbs-20mc`` those of the worked example in the paper's FBs edition. The others share them,
+but for what their name says: main unit, points and ladder size. Brief status byte 2 follows the table of
+command 40; the FBs example answers 40H there, which is not in that table. The M-series paper gives no sizes:
+``m-series`` has those of an FBs, with its file registers F.
+
+FBs and B1 models have a program image of their family, whose header is part of the ladder size, and refuse
+the pages past its end: ``fbs-24mc`` gives out no more than its code, the others all. That is a guess: no
+paper says that an FBs answers 4F at all.
 
 A model with another ladder is had by ``dataclasses.replace(model, ladder_words=...)``.
 """
@@ -12,6 +16,8 @@ A model with another ladder is had by ``dataclasses.replace(model, ladder_words=
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+
+from fatektool.simulator.fbs_program import CODE, FbsImage
 
 MAX_LADDER_WORDS = 0xFFFF
 WORDS_PER_PAGE = 64
@@ -31,6 +37,8 @@ class Model:
         os_version: one digit a nibble: 31H is 3.1.
         ladder_words: size of the program memory, 1 to 65535 words of 16 bits.
         f_registers: file registers; 0 where the model has none. Not part of the detailed status.
+        image: how an FBs keeps its program; None for the paper's header.
+        pages: how many program pages there are, if a program came with another number than is usual.
     """
 
     name: str
@@ -52,6 +60,8 @@ class Model:
     timers: int
     counters: int
     f_registers: int = 0
+    image: FbsImage | None = None
+    pages: int | None = None
 
     def __post_init__(self) -> None:
         if not 1 <= self.ladder_words <= MAX_LADDER_WORDS:
@@ -59,8 +69,16 @@ class Model:
 
     @property
     def page_count(self) -> int:
-        """Program pages with the header: one more than the ladder's, rounded up."""
-        return -(-self.ladder_words // WORDS_PER_PAGE) + 1
+        """Program pages: one more than the ladder's, rounded up; none more for an FBs image."""
+        if self.pages is not None:
+            return self.pages
+        pages = -(-self.ladder_words // WORDS_PER_PAGE)
+        return min(self.image.pages, pages) if self.image is not None and self.has_fbs_image else pages + 1
+
+    @property
+    def has_fbs_image(self) -> bool:
+        """True if its program is an FBs image, for which a very small ladder has no room."""
+        return self.image is not None and self.ladder_words > CODE
 
 
 _FBE_28MC = Model(
@@ -92,6 +110,7 @@ _FBS_20MC = replace(
     ladder_words=32768,
     d_registers=4096,
     f_registers=8192,
+    image=FbsImage("0003", 0x4F00, 512),
 )
 
 DEFAULT_MODEL = "fbe-28mc"
@@ -108,7 +127,15 @@ MODELS: dict[str, Model] = {
         replace(_FBE_8K, name="fbn-20mc", status2=0x55),
         replace(_FBE_28MC, name="fbn-40mc", status2=0x56, points_code=0x03),
         _FBS_20MC,
+        replace(_FBS_20MC, name="fbs-24mc", points_code=0x03, image=FbsImage("0003", 0x4F00, 320)),
         replace(_FBS_20MC, name="fbs-60mc", points_code=0x06),
-        replace(_FBS_20MC, name="m-series"),
+        replace(
+            _FBS_20MC,
+            name="b1-14mc",
+            points_code=0x01,
+            ladder_words=8192,
+            image=FbsImage("0110", 0x1F00, 128),
+        ),
+        replace(_FBS_20MC, name="m-series", image=None),
     )
 }

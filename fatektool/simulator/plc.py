@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 from fatektool.simulator.memory import DiscreteAction, Memory
 from fatektool.simulator.models import DEFAULT_MODEL, MODELS, PAGE_BYTES, Model
-from fatektool.simulator.program_image import demonstration_program
+from fatektool.simulator.programs import program_of
 from fatektool.simulator.refusal import Refusal, RefusalCode
 
 if TYPE_CHECKING:
@@ -54,8 +54,8 @@ STATUS_BITS = (
 )
 """The flags of status byte 1, bit 0 first."""
 
-FLAGS = (*STATUS_BITS, "id_differs", "syntax_error", "unsupported_instruction")
-"""All flags; the last three show in no status and make RUN be refused."""
+FLAGS = (*STATUS_BITS, "id_differs", "syntax_error", "unsupported_instruction", "password")
+"""All flags; the last four show in no status. Three make RUN be refused, ``password`` that pages are read."""
 
 _RUN_REFUSALS = (
     ("ladder_checksum_error", RefusalCode.LADDER_CHECKSUM),
@@ -88,6 +88,7 @@ class SimulatedPlc:
     id_differs = _Flag()
     syntax_error = _Flag()
     unsupported_instruction = _Flag()
+    password = _Flag()
 
     def __init__(
         self,
@@ -102,9 +103,9 @@ class SimulatedPlc:
         self.station = station
         self.model = model
         self.memory = Memory(model)
-        self.pages = demonstration_program(model.ladder_words) if pages is None else list(pages)
+        self.pages = program_of(model) if pages is None else list(pages)
         if len(self.pages) != model.page_count or any(len(page) != PAGE_BYTES for page in self.pages):
-            raise ValueError(f"{model.ladder_words} words are {model.page_count} pages of {PAGE_BYTES} bytes")
+            raise ValueError(f"expected {model.page_count} pages of {PAGE_BYTES} bytes for {model.name}")
         self.program_commands = program_commands
         self.acknowledge_only = False
         self.changes = 0
@@ -159,8 +160,11 @@ class SimulatedPlc:
     # Program ---------------------------------------------------------------------------------
 
     def read_page(self, page: int) -> bytes:
-        """One page of 128 bytes; RUN or STOP."""
-        if not self.program_commands:
+        """One page of 128 bytes; RUN or STOP.
+
+        What a PLC with a password answers is not known; 4, 'command can not execute', is a guess.
+        """
+        if not self.program_commands or self.password:
             raise Refusal(RefusalCode.ILLEGAL_FORMAT)
         if page >= len(self.pages):
             raise Refusal(RefusalCode.ILLEGAL_ADDRESS)

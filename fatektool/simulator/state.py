@@ -9,6 +9,7 @@ A JSON document; what is zero, off, enabled or an empty page (all FF) is left ou
                "disabled": {"X": [16]},
                "inputs": [50],                          terminals that are on
                "registers": {"R": {"12": 4261}},
+               "page_count": 512,                       if it is not the model's
                "pages": {"0": "4642 .."}}]}             256 hex digits each
 
 A file is taken as a whole or refused with one line that names it and the fault. It is written beside
@@ -32,6 +33,8 @@ from fatektool.simulator.plc import FLAGS, MAX_STATION, SimulatedPlc
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
+
+    from fatektool.simulator.models import Model
 
 SCHEMA = "fatektool.simulator/1"
 _MAX_FILE = 64 << 20  # some hundred kilobytes a PLC, of which there are 254 at most
@@ -110,6 +113,7 @@ def _plc_to_json(plc: SimulatedPlc) -> dict[str, Any]:
         "station": plc.station,
         "model": plc.model.name,
         "ladder_words": plc.model.ladder_words,
+        **({} if plc.model.pages is None else {"page_count": plc.model.pages}),
         "flags": [flag for flag in FLAGS if getattr(plc, flag)],
         "on": _addresses(memory.status),
         "disabled": _addresses(memory.disabled),
@@ -168,13 +172,12 @@ class _Reader:
     def _plc(self, part: Any) -> SimulatedPlc:
         if not isinstance(part, dict):
             self._fail("a PLC is not an object")
-        self._keys(part, _PLC_KEYS, "a PLC")
+        self._keys(part, (*_PLC_KEYS, *(["page_count"] if "page_count" in part else [])), "a PLC")
         station = self._number(part["station"], range(1, MAX_STATION + 1), "station")
         model = MODELS.get(part["model"]) if isinstance(part["model"], str) else None
         if model is None:
             self._fail(f"station {station}: no model {part['model']!r:.60}")
-        words = self._number(part["ladder_words"], range(1, MAX_LADDER_WORDS + 1), "ladder_words")
-        model = replace(model, ladder_words=words)
+        model = self._sized(model, part)
         pages = [_EMPTY_PAGE] * model.page_count
         for number, text in self._table(part["pages"], len(pages), f"station {station}: pages"):
             pages[number] = self._page(text, number)
@@ -193,6 +196,14 @@ class _Reader:
             for address, value in self._table(values, len(registers), f"station {station}: registers"):
                 registers[address] = self._number(value, range(0x10000), "a register")
         return plc
+
+    def _sized(self, model: Model, part: dict[str, Any]) -> Model:
+        words = self._number(part["ladder_words"], range(1, MAX_LADDER_WORDS + 1), "ladder_words")
+        model = replace(model, ladder_words=words)
+        if "page_count" not in part:
+            return model
+        most = replace(model, image=None).page_count
+        return replace(model, pages=self._number(part["page_count"], range(1, most + 1), "page_count"))
 
     def _areas(self, part: Any, tables: Mapping[str, Any], what: str) -> list[tuple[Any, Any]]:
         if not isinstance(part, dict) or not part.keys() <= tables.keys():

@@ -217,7 +217,7 @@ def test_a_header_that_does_not_hold(tmp_path: Path) -> None:
 def test_a_plc_that_keeps_its_program_to_itself(tmp_path: Path) -> None:
     error = refused(Bench(OLD, program_commands=False), NEW, tmp_path)
     assert isinstance(error, PlcRefused)
-    assert "use the vendor's program" in str(error)
+    assert "the engineer's project file" in str(error)
 
 
 def test_a_safety_backup_that_cannot_be_written(tmp_path: Path) -> None:

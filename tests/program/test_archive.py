@@ -15,6 +15,7 @@ from fatektool.program.archive import Backup, Source, load_backup, save_backup
 from fatektool.program.image import Program
 from fatektool.program.plc_record import SHAPE
 
+from .fbs import fbs_program
 from .samples import backup, document, file_of, header, plc_record, program
 
 if TYPE_CHECKING:
@@ -57,8 +58,18 @@ def test_the_file_has_its_keys_in_order_and_a_page_a_line() -> None:
     assert " ".join(top) == keys
     assert list(top["source"]) == ["target", "station", "protocol", "line"]
     assert list(top["plc"]) == ["status", "system"]
-    assert list(top["header"]) == ["valid", "signature", "ladder_words"]
-    assert top["header"] == {"valid": True, "signature": "FB30", "ladder_words": 100}
+    said = {
+        "valid": True,
+        "family": "facon",
+        "signature": "FB30",
+        "byte_order": "as paper",
+        "ladder_words": 100,
+        "code_words": None,
+        "capacity_words": None,
+        "checksum": None,
+        "sums": None,
+    }
+    assert list(top["header"].items()) == list(said.items())
 
 
 def test_a_change_of_one_page_is_a_change_of_two_lines() -> None:
@@ -73,8 +84,48 @@ def test_a_change_of_one_page_is_a_change_of_two_lines() -> None:
 
 def test_a_header_that_does_not_hold_is_kept_and_marked() -> None:
     image = program(400, page0=b"\xff" * 128)
-    found = Backup.parse(backup(image).to_bytes())
-    assert found.header_document == {"valid": False, "signature": None, "ladder_words": 65535}
+    found = Backup.parse(backup(image).to_bytes()).header_document
+    assert (found["valid"], found["family"], found["signature"]) == (False, None, None)
+
+
+@pytest.mark.parametrize(
+    ("image", "short"),
+    [
+        (program(400), {"valid": True, "signature": "FB30", "ladder_words": 400}),
+        (
+            Program(400, (b"BF03" + b"\x90\x01" + b"\xff" * 122, *program(400).pages[1:])),
+            {"valid": False, "signature": "BF03", "ladder_words": 0x9001},
+        ),
+        (
+            Program(0x8000, (*fbs_program().pages, b"\xff" * 128)),
+            {"valid": False, "signature": "FBS4", "ladder_words": 0x3030},
+        ),
+    ],
+    ids=["facon", "facon swapped", "fbs"],
+)
+def test_a_file_from_before_there_were_families_is_read(image: Program, short: dict[str, Any]) -> None:
+    top = document(image)
+    top["header"] = short
+    SCHEMA.validate(top)
+    assert Backup.parse(file_of(top)).program == image
+    for key in short:
+        top["header"] = short | {key: "FB31" if key == "signature" else 5}
+        with pytest.raises(DataError, match=rf"header\.{key}"):
+            Backup.parse(file_of(top))
+
+
+@pytest.mark.parametrize("swapped", [False, True])
+@pytest.mark.parametrize("count", [320, 512])
+def test_an_fbs_image_is_kept_with_its_sums(count: int, *, swapped: bool) -> None:
+    image = fbs_program(count, swapped=swapped)
+    top = document(image)
+    SCHEMA.validate(top)
+    assert top["page_count"] == count
+    assert top["header"]["checksum"] == {"stored": "4A57", "computed": "4A57", "valid": True}
+    assert Backup.parse(file_of(top)).program == image
+    top["header"]["checksum"]["valid"] = False
+    with pytest.raises(DataError, match=r"header\.checksum"):
+        Backup.parse(file_of(top))
 
 
 # --- damage -------------------------------------------------------------------------------------------
@@ -100,6 +151,15 @@ def drop(*path: str) -> Callable[[dict[str, Any]], None]:
     return change
 
 
+def cut(count: int) -> Callable[[dict[str, Any]], None]:
+    def change(top: Any) -> None:
+        del top["pages"][count:]
+        top["page_count"] = count
+
+    change.__name__ = f"cut to {count}"
+    return change
+
+
 DEEP: list[Any] = []
 for _ in range(200):
     DEEP = [DEEP]
@@ -111,6 +171,7 @@ DAMAGE = [
     (drop("schema"), "expected schema"),
     (drop("pages"), "pages: expected an array"),
     (put("pages", value={}), "pages: expected an array"),
+    (cut(6), "pages: expected 8 for 400 words, got 6"),
     (put("page_count", value=9), "page_count: expected 8 from the pages"),
     (put("page_count", value=True), "page_count: expected a whole number"),
     (put("pages", value=[]), "pages: expected 8 for 400 words, got 0"),

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fatektool.errors import DataError
-from fatektool.program.image import Header, Program, page_count, ranges
+from fatektool.program.image import Program, page_count, ranges
 
 from .samples import header, program
 
@@ -20,65 +20,28 @@ def test_an_image_has_a_header_and_a_page_for_each_64_words(words: int, pages: i
     assert len(program(words).pages) == pages
 
 
-@pytest.mark.parametrize("start", [b"FB30", b"FM99", b"FB00"])
-def test_a_header_that_holds(start: bytes) -> None:
-    found = Header.parse(header(8192, start))
-    assert found == Header(start.decode(), 8192, (), filled=True)
-    assert found.faults_for(8192) == ()
-
-
-@pytest.mark.parametrize(
-    ("start", "faults"),
-    [
-        (b"GB30", ("byte 0: expected F (46), got G (47)",)),
-        (b"\x00B30", ("byte 0: expected F (46), got 00",)),
-        (b"FA30", ("byte 1: expected B (42) or M (4D), got A (41)",)),
-        (b"FBA0", ("byte 2: expected a digit, got A (41)",)),
-        (b"FB3/", ("byte 3: expected a digit, got / (2F)",)),
-        (b"FB3:", ("byte 3: expected a digit, got : (3A)",)),
-        (
-            b"\xff\xff\xff\xff",
-            (
-                "byte 0: expected F (46), got FF",
-                "byte 1: expected B (42) or M (4D), got FF",
-                "byte 2: expected a digit, got FF",
-                "byte 3: expected a digit, got FF",
-            ),
-        ),
-    ],
-)
-def test_each_fault_of_a_header_is_named(start: bytes, faults: tuple[str, ...]) -> None:
-    assert Header.parse(header(400, start)).faults == faults
-
-
-def test_a_header_of_another_ladder_size() -> None:
-    assert Header.parse(header(8192)).faults_for(13184) == (
-        "bytes 4 and 5: expected the ladder size 13184 (3380), got 8192 (2000)",
-    )
-
-
-def test_the_rest_of_the_header_need_not_be_filled() -> None:
-    odd = header(400)[:-1] + b"\x00"
-    assert not Header.parse(odd).filled
-    assert Header.parse(odd).faults_for(400) == ()
-
-
-@given(st.binary(min_size=128, max_size=128))
-def test_any_page_can_be_looked_at_as_a_header(page: bytes) -> None:
-    found = Header.parse(page)
-    assert (found.signature is None) == any(not 0x20 < byte < 0x7F for byte in page[:4])
-    assert 0 <= found.ladder_words <= 0xFFFF
-
-
 @pytest.mark.parametrize("words", [0, -1, 65536])
 def test_there_is_no_such_ladder(words: int) -> None:
     with pytest.raises(DataError, match=f"expected 1 to 65535 words, got {words}"):
         Program(words, ())
 
 
-def test_the_pages_must_be_as_many_as_the_ladder_asks_for() -> None:
-    with pytest.raises(DataError, match="400 words has 8 pages, got 7"):
-        Program(400, program(400).pages[:7])
+@pytest.mark.parametrize("count", [0, 1, 2, 6, 9])
+def test_the_pages_must_be_as_many_as_the_ladder_asks_for(count: int) -> None:
+    pages = (program(400).pages * 2)[:count]
+    with pytest.raises(DataError, match=f"400 words has 8 pages, got {count}"):
+        Program(400, pages)
+
+
+def test_the_very_last_page_may_be_missing_as_a_plc_may_refuse_it() -> None:
+    short = Program(400, program(400).pages[:7])
+    assert short.pages_asked_for == 8
+    assert short.header.valid
+
+
+def test_a_header_page_alone_is_no_program() -> None:
+    with pytest.raises(DataError, match="64 words has 2 pages, got 1"):
+        Program(64, program(64).pages[:1])
 
 
 def test_a_page_of_another_length_is_named() -> None:

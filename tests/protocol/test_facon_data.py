@@ -230,7 +230,7 @@ def test_a_code_with_a_cure_says_it(code: int) -> None:
     assert refusal(code, Command.RUN_STOP, "RUN").hint
 
 
-@pytest.mark.parametrize("code", [2, 4])
+@pytest.mark.parametrize("code", [2, 4, 0xA])
 @pytest.mark.parametrize("command", [Command.READ_PAGE, Command.WRITE_PAGE])
 def test_a_plc_without_program_commands(code: int, command: Command) -> None:
     assert refusal(code, command, "read program page 0").hint == PROGRAM_REFUSED

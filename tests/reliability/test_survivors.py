@@ -15,7 +15,8 @@ from fatektool.jobs.restore import RestoreOptions, RestoreResult, restore
 from fatektool.jobs.safety import find_way_back, save_safety_backup
 from fatektool.program.archive import Backup, load_backup, save_backup
 from fatektool.program.files import file_error, read_bounded, require_folder, require_place
-from fatektool.program.image import Header, Program
+from fatektool.program.headers.families import read_header
+from fatektool.program.image import Program
 from fatektool.program.plc_record import fault_of
 from tests.jobs.bench import READ_PAGE, WRITE_PAGE, Bench, Seen, framed
 from tests.program.samples import backup as backup_of
@@ -224,14 +225,14 @@ def test_what_stands_there_instead_of_a_plc_record_is_told(part: object, got: ob
     [(b"FB3!", "FB3!"), (b"FB3~", "FB3~"), (b"FB3 ", None), (b"FB3\x7f", None), (b"FB3\x80", None)],
 )
 def test_a_signature_is_of_characters_that_can_be_seen(start: bytes, signature: str | None) -> None:
-    assert Header.parse(header(400, start)).signature == signature
+    assert read_header([header(400, start)], 400).signature == signature
 
 
 @pytest.mark.parametrize(
     ("start", "words"), [(b"FB3!", "! (21)"), (b"FB3~", "~ (7E)"), (b"FB3 ", "20"), (b"FB3\x7f", "7F")]
 )
 def test_a_byte_is_shown_as_a_character_if_it_is_one(start: bytes, words: str) -> None:
-    assert Header.parse(header(400, start)).faults == (f"byte 3: expected a digit, got {words}",)
+    assert read_header([header(400, start)], 400).faults == (f"byte 3: expected a digit, got {words}",)
 
 
 def test_a_file_of_just_the_limit(tmp_path: Path) -> None:
