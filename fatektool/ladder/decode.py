@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from fatektool.ladder.forms import Form
 
 _LD: Final = 0x60
+_END: Final = 0xFFFF
 
 
 def _index(head_words: int) -> list[tuple[tuple[int, ...], dict[tuple[int, ...], Form]]]:
@@ -53,6 +54,14 @@ def decode(words: Sequence[int]) -> tuple[Instruction, ...]:
         found.append(instruction)
         place += len(instruction.words)
     return tuple(found)
+
+
+def end_of(words: Sequence[int], place: int) -> int:
+    """Where a unit that begins here ends: at FFFF where an instruction would begin, or with the words."""
+    while place < len(words) and words[place] != _END:
+        instruction = _instruction(words, place)
+        place += len(instruction.words) if instruction is not None else 1
+    return min(place, len(words))
 
 
 def encode(instructions: Iterable[Instruction]) -> tuple[int, ...]:

@@ -27,6 +27,7 @@ class Network:
         number: from 0, through the whole program.
         first: the number of its first instruction, from 0, through the whole program.
         word: the place of its first word in the code, from 0, the end mark between two units not counted.
+        place: the place of its first word in the image.
         unit: 0 for the main unit, 1 for the sub unit.
         instructions: what it is made of.
     """
@@ -34,6 +35,7 @@ class Network:
     number: int
     first: int
     word: int
+    place: int
     unit: int
     instructions: tuple[Instruction, ...]
 
@@ -67,9 +69,14 @@ class Code:
     networks: tuple[Network, ...]
 
     @classmethod
-    def of(cls, *units: Sequence[int]) -> Code:
-        """Read the words of the main unit, and those of the sub unit."""
-        return cls(tuple(_networks(units)))
+    def of(cls, *units: Sequence[int], places: Sequence[int] = (0, 0)) -> Code:
+        """Read code.
+
+        Args:
+            units: the words of the main unit, and those of the sub unit.
+            places: where each begins in the image, in words.
+        """
+        return cls(tuple(_networks(units, places)))
 
     @property
     def instructions(self) -> tuple[Instruction, ...]:
@@ -87,16 +94,22 @@ class Code:
         return sum(len(found.words) for found in self.instructions if not found.known)
 
 
-def _networks(units: Sequence[Sequence[int]]) -> Iterator[Network]:
+def _networks(units: Sequence[Sequence[int]], places: Sequence[int]) -> Iterator[Network]:
     number = first = word = 0
-    for unit, words in enumerate(units):
-        group: list[Instruction] = []
-        for instruction in decode(words):
-            if group and instruction.form.begins:
-                yield (done := Network(number, first, word, unit, tuple(group)))
-                number, first, word = number + 1, first + len(group), word + len(done.words)
-                group = []
-            group.append(instruction)
-        if group:
-            yield (done := Network(number, first, word, unit, tuple(group)))
+    for unit, (words, place) in enumerate(zip(units, places, strict=False)):
+        begin = word
+        for group in _groups(words):
+            done = Network(number, first, word, place + word - begin, unit, group)
+            yield done
             number, first, word = number + 1, first + len(group), word + len(done.words)
+
+
+def _groups(words: Sequence[int]) -> Iterator[tuple[Instruction, ...]]:
+    group: list[Instruction] = []
+    for instruction in decode(words):
+        if group and instruction.form.begins:
+            yield tuple(group)
+            group = []
+        group.append(instruction)
+    if group:
+        yield tuple(group)

@@ -1,0 +1,110 @@
+"""Which code page a project's comments were written in.
+
+A file does not say. It is the page in which all comments decode; where that is several, the one in which they
+look most like words: accented letters beside letters, ideographs of the common half beside their like.
+"""
+
+from __future__ import annotations
+
+import unicodedata
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from fatektool.errors import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+SINGLE: Final = {
+    "cp1252": "àáâãäåæçèéêëìíîïñòóôõöøùúûüýÿœšžßÀÁÂÃÄÅÆÇÈÉÊËÌÍÎÏÑÒÓÔÕÖØÙÚÛÜÝŒ",
+    "cp1250": "áâăäąćçčďđéęëěíîĺľłńňóôőöŕřśšşťţúůűüýźżžßÁÂĂÄĄĆÇČĎĐÉĘËĚÍÎĹĽŁŃŇÓÔŐÖŔŘŚŠŞŤŢÚŮŰÜÝŹŻŽ",
+    "cp1254": "çğıİöşüâîûÇĞÖŞÜ",
+}
+"""Code pages of one byte a character, and the letters of the languages they are for."""
+DOUBLE: Final = {"cp932": (0x88, 0x97), "cp936": (0xB0, 0xD7), "cp950": (0xA4, 0xC6)}
+"""Code pages of two bytes, and the first bytes of the ideographs in common use."""
+CODE_PAGES: Final = ("cp1250", "cp1252", "cp932", "cp936", "cp950", "cp1254")
+LAST_RESORT: Final = "latin-1"
+_SIGNS: Final = "°²³µ±×÷§·–—…‘’“”€"  # noqa: RUF001  # what is meant
+_RARE: Final = "œŒìû"
+_TURKISH: Final = "ğıİşŞĞ"
+_ASCII: Final = 0x80
+
+
+class Choice(NamedTuple):
+    """A code page, and whether it is more than the last resort.
+
+    Attributes:
+        name: as Python calls it.
+        sure: False if no code page decodes all comments.
+    """
+
+    name: str
+    sure: bool
+
+
+def code_page(name: str) -> str:
+    """Check a code page that a user names.
+
+    Raises:
+        UsageError: it is none of the known ones.
+    """
+    if name not in {*CODE_PAGES, LAST_RESORT}:
+        raise UsageError(f"no code page {name!r}: expected {', '.join(CODE_PAGES)} or {LAST_RESORT}")
+    return name
+
+
+def choose(texts: Sequence[bytes]) -> Choice:
+    """The code page of these texts."""
+    found = []
+    for name in (*SINGLE, *DOUBLE):
+        decoded = _all(texts, name)
+        if decoded is not None:
+            found.append((name, sum(_likeness(text, name) for text in decoded)))
+    if not found:
+        return Choice(LAST_RESORT, sure=False)
+    return Choice(max(found, key=lambda each: each[1])[0], sure=True)
+
+
+def _all(texts: Iterable[bytes], name: str) -> list[str] | None:
+    try:
+        return [text.decode(name) for text in texts]
+    except UnicodeDecodeError:
+        return None
+
+
+def _likeness(text: str, name: str) -> int:
+    """How much a text looks like words in a language of this code page."""
+    score = 0
+    for place, letter in enumerate(text):
+        if ord(letter) >= _ASCII:
+            around = text[max(0, place - 1) : place] + text[place + 1 : place + 2]
+            if name in SINGLE:
+                score += _letter(letter, around, SINGLE[name])
+            else:
+                score += _ideograph(letter, around, name)
+    return score
+
+
+def _letter(letter: str, around: str, letters: str) -> int:
+    if letter in _SIGNS:
+        return 0
+    if letter not in letters:
+        return -1
+    if letter in _RARE or not any(near.isascii() and near.isalpha() for near in around):
+        return 1
+    return 3 if letter in _TURKISH else 2
+
+
+def _ideograph(letter: str, around: str, name: str) -> int:
+    if any(near.isascii() and near.islower() for near in around):
+        return -2
+    raw = letter.encode(name)
+    if len(raw) == 1:  # katakana of half width
+        return 1 if any(unicodedata.name(near, "").startswith("HALFWIDTH") for near in around) else -1
+    if unicodedata.name(letter, "").startswith(("HIRAGANA", "KATAKANA")):
+        return 4 if name == "cp932" else 0
+    first, last = DOUBLE[name]
+    common = first <= raw[0] <= last and (name != "cp936" or raw[1] > 0xA0)
+    if common:
+        return 3
+    return -1 if unicodedata.name(letter, "").startswith("CJK UNIFIED") else 0

@@ -1,0 +1,18 @@
+"""Words of code: each comes out in one instruction, and all of them come back."""
+
+from __future__ import annotations
+
+import struct
+
+from fatektool.ladder.networks import Code
+
+
+def one_input(data: bytes) -> None:
+    """Decode; the instructions' words in order are the words, and each has a text."""
+    words = struct.unpack(f">{len(data) // 2}H", data[: len(data) // 2 * 2])
+    code = Code.of(words)
+    assert code.words == words
+    for instruction in code.instructions:
+        assert instruction.text.isprintable()
+        assert instruction.known or instruction.text.startswith("?? ")
+        list(instruction.accesses)
