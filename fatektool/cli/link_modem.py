@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fatektool.cli.documents import where
+from fatektool.cli.link_host import host_document
 from fatektool.cli.link_ports import modem_rows
 from fatektool.cli.options import PATH, Connection, connection_options, yes_option
 from fatektool.cli.output import Voice, can_ask, table
 from fatektool.cli.read import warn_of
 from fatektool.cli.way_back import same_again, save_safety
 from fatektool.errors import PlcError, RestoreIncomplete, UsageError
+from fatektool.jobs.link_host import LinkHost, read_host
 from fatektool.jobs.link_modem import ModemReport, ModemSettings, plan_modem, read_modem, write_modem
 from fatektool.program.files import require_folder
 
@@ -40,8 +42,11 @@ def show_command(connection: Connection, voice: Voice) -> int:
     """Show phone number, dialling, auto answer and state of the modem."""
     with connection.open(voice) as plc:
         report = read_modem(plc)
-        document = _document(plc, report, None)
+        host = read_host(plc)
+        document = _document(plc, report, None, host)
     voice.show(document, table(_rows(report)))
+    for warning in host.warnings():
+        voice.warn(warning)
     warn_of(report.errors, voice)
     return PlcError.exit_code if not report.raw else 0
 
@@ -109,12 +114,15 @@ def set_command(
     failed: list[NotTaken] = []
     with connection.open(voice, writes=not dry_run) as plc:
         plan = plan_modem(plc, settings)
+        host = read_host(plc)
+        if plan.changes and not (dry_run or yes or can_ask()):
+            raise UsageError(
+                "this needs a confirmation, and there is no terminal to ask on: nothing was written",
+                hint="add --yes",
+            )
+        for warning in host.warnings():
+            voice.warn(warning)
         if plan.changes and not dry_run:
-            if not yes and not can_ask():
-                raise UsageError(
-                    "this needs a confirmation, and there is no terminal to ask on: nothing was written",
-                    hint="add --yes",
-                )
             safety = None if folder is None else str(save_safety(plan.present, "modem", folder))
             for change in plan.changes:
                 voice.say(_change_line(change))
@@ -130,7 +138,7 @@ def set_command(
                 error.hint = f"{error.hint}; mend the cause, then: {error.details['command']}"
                 raise
         report = read_modem(plc)
-        document = _document(plc, report, _set_document(plan, failed, safety=safety, dry_run=dry_run))
+        document = _document(plc, report, _set_document(plan, failed, safety=safety, dry_run=dry_run), host)
     voice.show(document, _set_lines(plan, failed, report, dry_run=dry_run))
     warn_of({str(each.element): _did_not(each) for each in failed}, voice)
     return PlcError.exit_code if failed else 0
@@ -170,10 +178,13 @@ def _did_not(each: NotTaken) -> str:
     return f"did not take: expected {_text(bits, each.wanted)}, it {got}: {each.reason}"
 
 
-def _document(plc: Plc, report: ModemReport, written: dict[str, Any] | None) -> dict[str, Any]:
+def _document(
+    plc: Plc, report: ModemReport, written: dict[str, Any] | None, host: LinkHost
+) -> dict[str, Any]:
     return {
         "schema": "fatektool.link-modem/1",
         **where(plc),
+        "os": host_document(host),
         "modem": asdict(report.modem),
         "registers": {
             name: bool(value) if name.startswith("M") else f"{value:04X}"

@@ -8,14 +8,17 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fatektool.cli.documents import where
+from fatektool.cli.link_host import host_document
 from fatektool.cli.link_result import abnormal_rows, result_document
 from fatektool.cli.options import Connection, connection_options
 from fatektool.cli.output import Voice, table
 from fatektool.cli.read import warn_of
+from fatektool.jobs.link_host import LinkHost, read_host
 from fatektool.jobs.link_ports import PortsReport, read_ports
 from fatektool.protocol.link_codes import TRANSACTIONS, meaning, next_step
 from fatektool.protocol.link_kinds import TableKind
 from fatektool.protocol.link_settings import DIALLING, PROFILES
+from fatektool.protocol.link_versions import needs_of_ports
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -38,8 +41,11 @@ def ports_command(connection: Connection, voice: Voice) -> int:
     """
     with connection.open(voice) as plc:
         report = read_ports(plc)
-        document = _document(plc, report)
+        host = read_host(plc, needs_of_ports(report.raw.get("R4047")))
+        document = _document(plc, report, host)
     voice.show(document, _lines(report))
+    for warning in host.warnings():
+        voice.warn(warning)
     if voice.verbose:
         warn_of(report.errors, voice)
     elif report.errors:
@@ -47,10 +53,11 @@ def ports_command(connection: Connection, voice: Voice) -> int:
     return 0
 
 
-def _document(plc: Plc, report: PortsReport) -> dict[str, Any]:
+def _document(plc: Plc, report: PortsReport, host: LinkHost) -> dict[str, Any]:
     return {
         "schema": "fatektool.link-ports/1",
         **where(plc),
+        "os": host_document(host),
         "ports": [
             asdict(port)
             | {

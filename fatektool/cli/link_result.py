@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fatektool.cli.documents import where
+from fatektool.cli.link_host import host_document
 from fatektool.cli.options import Connection, connection_options
 from fatektool.cli.output import Voice, table
+from fatektool.jobs.link_host import LinkHost, read_host
 from fatektool.jobs.link_ports import ResultReport, read_result
 from fatektool.jobs.link_table import parse_start
 from fatektool.protocol.link_codes import TRANSACTIONS
@@ -45,8 +47,11 @@ def result_command(wr: str, connection: Connection, voice: Voice, *, kind: str |
     start = parse_start(wr, "WR")
     with connection.open(voice) as plc:
         report = read_result(plc, start, None if kind is None else TableKind(kind))
-        document = _document(plc, start, report)
+        host = read_host(plc)
+        document = _document(plc, start, report, host)
     voice.show(document, _lines(report))
+    for warning in host.warnings():
+        voice.warn(warning)
     return int(check and not report.good)
 
 
@@ -70,7 +75,7 @@ def _is_alone(report: ResultReport) -> bool:
     return report.kind is not None and report.kind not in TRANSACTIONS
 
 
-def _document(plc: Plc, start: Element, report: ResultReport) -> dict[str, Any]:
+def _document(plc: Plc, start: Element, report: ResultReport, host: LinkHost) -> dict[str, Any]:
     operation, high_speed = report.state.operation, report.high_speed
     message = None
     if report.received_length is not None:
@@ -78,6 +83,7 @@ def _document(plc: Plc, start: Element, report: ResultReport) -> dict[str, Any]:
     return {
         "schema": "fatektool.link-result/1",
         **where(plc),
+        "os": host_document(host),
         "wr": str(start),
         "kind": None if report.kind is None else report.kind.value,
         "result": result_document(

@@ -11,12 +11,14 @@ from fatektool.cli.link_result import KINDS
 from fatektool.cli.link_table_view import table_document, table_lines
 from fatektool.cli.link_table_write import write_command
 from fatektool.cli.options import PATH, Connection, connection_options, voice_options
+from fatektool.jobs.link_host import LinkHost, read_host
 from fatektool.jobs.link_table import parse_start, read_table
 from fatektool.jobs.link_toml import MAX_TOML, load_table
 from fatektool.jobs.link_toml_text import dump_table
 from fatektool.program.files import read_bounded, require_place, write_whole
 from fatektool.protocol.link_kinds import TableKind
 from fatektool.protocol.link_tables import place_faults
+from fatektool.protocol.link_versions import needs_of_table
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -59,8 +61,11 @@ def show_command(sr: str, connection: Connection, voice: Voice, *, kind: str, ch
     with connection.open(voice) as plc:
         found = read_table(plc, start, TableKind(kind))
         faults = [*place_faults(start, len(found.to_words())), *found.faults()]
-        document = table_document(found, faults, str(start), None, where(plc))
+        host = read_host(plc, needs_of_table(found))
+        document = table_document(found, faults, str(start), None, where(plc), host=host)
     voice.show(document, table_lines(found, faults))
+    for warning in host.warnings():
+        voice.warn(warning)
     return int(check and bool(faults))
 
 
@@ -71,7 +76,10 @@ def check_command(file: Path, voice: Voice) -> int:
     """Check the table in FILE: exit 0 if it holds, 1 if something in it is wrong. Needs no PLC."""
     found = load_table(read_bounded(file, MAX_TOML), str(file))
     faults = found.faults()
-    voice.show(table_document(found, faults, None, str(file), None), table_lines(found, faults))
+    host = LinkHost(None, needs_of_table(found))
+    voice.show(table_document(found, faults, None, str(file), None, host=host), table_lines(found, faults))
+    for need in host.needs:
+        voice.say(f"{need.what} needs OS {need.version} or later of the PLC")
     return 1 if faults else 0
 
 
@@ -90,10 +98,13 @@ def save_command(sr: str, file: Path, connection: Connection, voice: Voice, *, k
     with connection.open(voice) as plc:
         found = read_table(plc, start, TableKind(kind))
         faults = [*place_faults(start, len(found.to_words())), *found.faults()]
-        document = table_document(found, faults, str(start), str(file), where(plc))
+        host = read_host(plc, needs_of_table(found))
+        document = table_document(found, faults, str(start), str(file), where(plc), host=host)
     write_whole(file, dump_table(found).encode(), overwrite=force)
     count = len(found.to_words())
     voice.show(document, [f"saved {file}: {kind}, {count} registers from {start}"])
+    for warning in host.warnings():
+        voice.warn(warning)
     if faults:
         voice.warn(f"the table has {len(faults)} faults: 'fatektool link table check {file}' shows them")
     return 0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
+from fatektool.cli.link_host import host_document
 from fatektool.protocol.link_checks import CLINK_COMMANDS, HIGH_SPEED_COMMANDS, MBUS_COMMANDS
 from fatektool.protocol.link_codes import meaning
 from fatektool.protocol.link_messages import MessageTable
@@ -13,11 +14,13 @@ from fatektool.protocol.link_operands import (
     MBUS_MASTER_TYPES,
     MBUS_SLAVE_TYPES,
 )
+from fatektool.protocol.link_settings import UNWATCHED
 from fatektool.protocol.link_tables import HighSpeedTable, MbusTable, Table, kind_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
+    from fatektool.jobs.link_host import LinkHost
     from fatektool.protocol.link_kinds import TableKind
     from fatektool.protocol.link_results import Fault
 
@@ -25,7 +28,13 @@ _ARROWS: Final = {1: "<-", 2: "->", 3: "->"}
 
 
 def table_document(
-    table: Table, faults: Sequence[Fault], start: str | None, file: str | None, place: dict[str, Any] | None
+    table: Table,
+    faults: Sequence[Fault],
+    start: str | None,
+    file: str | None,
+    place: dict[str, Any] | None,
+    *,
+    host: LinkHost,
 ) -> dict[str, Any]:
     """``fatektool.link-table/1``.
 
@@ -35,6 +44,7 @@ def table_document(
         start: operand SR; None for a table in a file.
         file: the file; None for a table in a PLC.
         place: when and where it was read; None for a table in a file.
+        host: the PLC; one of which nothing is known for a table in a file.
     """
     message = None
     if isinstance(table, MessageTable):
@@ -49,6 +59,7 @@ def table_document(
     return {
         "schema": "fatektool.link-table/1",
         **(place or {"time": None, "target": None, "station": None, "protocol": None}),
+        "os": host_document(host),
         "sr": start,
         "file": file,
         "kind": kind_of(table).value,
@@ -56,6 +67,7 @@ def table_document(
         "faults": fault_documents(kind_of(table), faults),
         "transactions": None if message else _rows(table, faults),
         "message": message,
+        "notes": [note.removeprefix("note: ") for note in table_notes(table)],
         "words": [f"{word:04X}" for word in table.to_words()],
     }
 
@@ -110,6 +122,23 @@ def table_lines(table: Table, faults: Sequence[Fault]) -> Iterator[str]:
         yield f"{place}: {fault.reason}{code}"
     if not faults:
         yield "all within the documented ranges"
+    yield from table_notes(table)
+
+
+def table_notes(table: Table) -> list[str]:
+    """What the paper says of a table of this kind that no check of its rows can find."""
+    if not isinstance(table, HighSpeedTable) or not table.rows:
+        return []
+    senders = sorted({row.station for row in table.rows})
+    listed = ", ".join(map(str, senders))
+    alone = (
+        [f"note: only station {listed} sends: if it is the master, no absent slave is detected at all"]
+        if len(senders) == 1
+        else []
+    )
+    watched = f"note: {UNWATCHED} (senders here: {listed}); let the receiving PLC watch a bit that changes"
+    procedure = "note: when the link runs, write 0 to R4058 until it stays 0: then the network works"
+    return [*alone, watched, f"{procedure}; 'fatektool link result WR --kind md3' shows R4058 and R4059"]
 
 
 def _row_lines(table: Table, faults: Sequence[Fault]) -> Iterator[str]:

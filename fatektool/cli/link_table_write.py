@@ -9,16 +9,19 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fatektool.cli.documents import where
+from fatektool.cli.link_host import host_document
 from fatektool.cli.link_table_view import fault_documents, table_lines
 from fatektool.cli.options import PATH, Connection, connection_options, yes_option
 from fatektool.cli.output import Voice, can_ask
 from fatektool.cli.read import warn_of
 from fatektool.cli.way_back import same_again, save_safety
 from fatektool.errors import DataError, PlcError, RestoreIncomplete, UsageError
+from fatektool.jobs.link_host import LinkHost, read_host
 from fatektool.jobs.link_table import WritePlan, parse_start, plan_write, write_plan
 from fatektool.jobs.link_toml import MAX_TOML, load_table
 from fatektool.program.files import read_bounded, require_folder
 from fatektool.protocol.link_tables import kind_of, place_faults
+from fatektool.protocol.link_versions import needs_of_table
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -75,12 +78,15 @@ def write_command(
     failed: list[NotTaken] = []
     with connection.open(voice, writes=not dry_run) as plc:
         plan = plan_write(plc, start, words)
+        host = read_host(plc, needs_of_table(table))
+        if plan.changes and not (dry_run or yes or can_ask()):
+            raise UsageError(
+                "this needs a confirmation, and there is no terminal to ask on: nothing was written",
+                hint="add --yes",
+            )
+        for warning in host.warnings():
+            voice.warn(warning)
         if plan.changes and not dry_run:
-            if not yes and not can_ask():
-                raise UsageError(
-                    "this needs a confirmation, and there is no terminal to ask on: nothing was written",
-                    hint="add --yes",
-                )
             safety = None if folder is None else str(save_safety(plan.present, _file_stem(file), folder))
             _tell(plan, table, faults, safety, voice)
             if not voice.confirm(f"Write {len(plan.changes)} registers of the PLC?", yes=yes):
@@ -102,6 +108,7 @@ def write_command(
             plan=plan,
             failed=failed,
             safety=safety,
+            host=host,
             dry_run=dry_run,
         )
     voice.show(document, _result_lines(plan, failed, dry_run=dry_run))
@@ -163,11 +170,13 @@ def _document(
     plan: WritePlan,
     failed: list[NotTaken],
     safety: str | None,
+    host: LinkHost,
     dry_run: bool,
 ) -> dict[str, Any]:
     return {
         "schema": "fatektool.link-write/1",
         **where(plc),
+        "os": host_document(host),
         "file": str(file),
         "sr": str(start),
         "kind": kind_of(table).value,

@@ -1,8 +1,9 @@
 """A short examination of a PLC and its line: what is wrong, by what evidence, and what to do.
 
 A short loopback test comes first, its rules are ``diagnosis``. If the line works, the brief status (40) tells
-what the PLC itself has to complain of. If it does not, and it has a speed, the usual speeds and formats are
-tried: a PLC that answers there explains the silence here.
+what the PLC itself has to complain of, and an FBs's R4058 and R4059 what its high-speed link has
+(``high_speed``). If it does not, and it has a speed, the usual speeds and formats are tried: a PLC that
+answers there explains the silence here.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING, Final
 from fatektool.errors import LineError, PlcError, TransportClosed
 from fatektool.jobs.diagnosis import diagnose
 from fatektool.jobs.finding import Case, Finding
+from fatektool.jobs.high_speed import high_speed_findings
 from fatektool.jobs.loopback import run_loopback
 from fatektool.jobs.loopback_result import LoopbackPlan
 from fatektool.jobs.scan import Setting, Station, scan
@@ -88,6 +90,7 @@ def examine(plc: Plc, on_step: Callable[[str, int, int], object] = lambda *_: No
             )
         else:
             found.findings += _of_flags(found.brief)
+            found.findings += high_speed_findings(plc)
     elif link.transport.line is not None:
         found.elsewhere = _look_elsewhere(plc, on_step)
         found.findings += [_answers_elsewhere(station) for station in found.elsewhere]

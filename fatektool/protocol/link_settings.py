@@ -120,7 +120,9 @@ class HighSpeedLink:
         if known is not None:
             return known
         bits = [text for bit, text in ABNORMAL.items() if bit.bit_count() == 1 and self.abnormal_code & bit]
-        return " and ".join(bits) if self.abnormal_code < 0x10 else "a code that the paper does not list"
+        if self.abnormal_code >= 0x10:
+            return "a code that the paper does not list"
+        return f"{' and '.join(bits)} (our reading: the paper lists single codes)"
 
 
 @dataclass(frozen=True, slots=True)

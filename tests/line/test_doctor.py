@@ -10,6 +10,7 @@ from fatektool.client import Plc
 from fatektool.errors import TransportClosed
 from fatektool.jobs.doctor import Examination, examine
 from fatektool.link import Link
+from fatektool.protocol.elements import Element
 from fatektool.protocol.facon import FACON
 from fatektool.transport.base import LineSettings
 from tests.line.test_scan import Adjustable, Line
@@ -63,6 +64,28 @@ def test_what_the_plc_complains_of(flag: str, rule: str) -> None:
     found = examine(bench.plc)
     assert rules(found) == {rule}
     assert not found.healthy
+
+
+def test_the_high_speed_link_of_an_fbs() -> None:
+    bench = simulated(baud=9600, model="fbs-20mc")
+    assert examine(bench.plc).findings == []
+    bench.plc.write_registers(Element("R", 4058), [5, 0x0A11])
+    (finding,) = examine(bench.plc).findings
+    assert (finding.rule, finding.fault) == ("high-speed-link", True)
+    assert finding.finding == "station 5 of the high-speed link (port 2, MD3) is abnormal"
+    assert finding.evidence == (
+        "R4058 = 5, R4059 = 0A11H (17 abnormal answers, the last: no answer from the slave)"
+    )
+    assert "write 0 to R4058 and R4059 until they stay 0" in finding.advice
+    bench.plc.write_registers(Element("R", 4058), [0, 3])
+    (finding,) = examine(bench.plc).findings
+    assert (finding.rule, finding.fault) == ("high-speed-link", False)
+
+
+def test_what_other_plcs_hold_there_is_no_finding() -> None:
+    bench = simulated(baud=9600)
+    bench.plc.write_registers(Element("R", 4058), [5, 0x0A11])
+    assert examine(bench.plc).findings == []
 
 
 def doctored(line: Line, station: int) -> Plc:
