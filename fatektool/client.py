@@ -5,6 +5,7 @@ All values are plain: discretes are bool, registers unsigned int, pages 128 byte
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING
 
 from fatektool.batch import ask_all, ask_until_refused, tell_all
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from fatektool.protocol.commands import Request
     from fatektool.protocol.elements import Element
     from fatektool.protocol.status import BriefStatus, DetailedStatus
+    from fatektool.transport.lent import LentTransport
 
 _MODE_TRIES = 20
 
@@ -52,12 +54,20 @@ class Plc:
         link: exchanges with one station.
         target: the target as the user named it.
         resources: closed with the PLC; None if the link is somebody else's.
+        lent: the line, if others may have it now and then.
     """
 
-    def __init__(self, link: Link, target: str, resources: ExitStack | None = None) -> None:
+    def __init__(
+        self,
+        link: Link,
+        target: str,
+        resources: ExitStack | None = None,
+        lent: LentTransport | None = None,
+    ) -> None:
         self.link = link
         self.target = target
         self._resources = resources
+        self._lent = lent
         self._open = True
 
     @property
@@ -92,6 +102,29 @@ class Plc:
         except LineError:
             return False
         return True
+
+    def take(self) -> None:
+        """Have the line again if it was lent, however long that takes.
+
+        Raises:
+            LineError: it cannot be opened.
+        """
+        if self._lent is not None:
+            self._lent.take()
+
+    def lend(self, seconds: float, *, broken: bool = False) -> None:
+        """Wait so many seconds; who waits for the line may have it, until it is asked for with ``take``.
+
+        Args:
+            seconds: from now on.
+            broken: True if the line is to be opened anew in any case.
+        """
+        if self._lent is None:
+            time.sleep(seconds)
+            return
+        if broken:
+            self._lent.give_back()
+        self._lent.lend(seconds)
 
     def close(self) -> None:
         """Close the line; again is fine."""

@@ -7,6 +7,7 @@ after each change, as a real one would.
 from __future__ import annotations
 
 from contextlib import ExitStack
+from functools import partial
 from math import inf
 from typing import TYPE_CHECKING, Final, Literal
 
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from fatektool.protocol.commands import Command
     from fatektool.protocol.modbus_map import ModbusMap
     from fatektool.transport.base import Transport
+    from fatektool.transport.lent import LentTransport
     from fatektool.transport.limit import Limit
     from fatektool.transport.lock import PortLock
 
@@ -118,7 +120,9 @@ def connect(
     read_only: bool = False,
     modbus_map: ModbusMap | Literal["custom"] | None = None,
     low_latency: bool = True,
+    lend: bool = False,
     note: Callable[[str], None] = no_note,
+    waiting: Callable[[str], None] = no_note,
 ) -> Plc:
     """Open the line to a PLC. Nothing is sent yet, but for ``modbus_map="custom"``.
 
@@ -141,7 +145,9 @@ def connect(
         modbus_map: which elements have which Modbus references; by default the standard map. ``custom`` reads
             the PLC's own.
         low_latency: ask the driver of a serial port to hand on at once what it receives, on Linux.
+        lend: True for who lets others have the line between two rounds, with ``Plc.lend``.
         note: is told what a curious user may want to know.
+        waiting: is told, at once, who has the line, if it must be waited for.
 
     Raises:
         UsageError: something named is not there to be named, or the protocol lacks what is needed.
@@ -157,6 +163,7 @@ def connect(
     line = LineSettings(baud, usual_format(protocol) if format is None else format)
     stack = ExitStack()
     locks: list[PortLock] = []
+    lines: list[LentTransport] = []
     try:
         transport = open_line(
             target,
@@ -168,7 +175,9 @@ def connect(
             trace=trace,
             low_latency=low_latency,
             note=note,
+            waiting=waiting,
             on_lock=locks.append,
+            on_lent=lines.append if lend else None,
         )
         if limit is not None:
             from fatektool.transport.limit import LimitedTransport
@@ -185,29 +194,27 @@ def connect(
             note=note,
         )
         for lock in locks:
-            _hand_over_doubt(lock, link, stack)
+            _hand_over_doubt(lock, link)
+        for lent in lines:
+            lent.on_lock = partial(_hand_over_doubt, link=link)
         if modbus_map == "custom":
             link.codec = mapped(codec, map_in_plc(link))
     except BaseException:
         stack.close()
         raise
-    return Plc(link, target, stack)
+    return Plc(link, target, stack, lines[0] if lines else None)
 
 
-def _hand_over_doubt(lock: PortLock, link: Link, stack: ExitStack) -> None:
+def _hand_over_doubt(lock: PortLock, link: Link) -> None:
     """Begin behind a fence where the one before left an answer on its way; leave word of one of our own.
 
     A doubt that no fence took away is not handed on a second time: by then the line was listened to for as
     long as a PLC may take, and a PLC without loopbacks (4E) is not to be locked out for ever.
     """
-    inherited = lock.found_doubt
+    inherited, fences = lock.found_doubt, link.counters.fences
     if inherited:
         link.fences.inherit_doubt()
-
-    def leave() -> None:
-        lock.leaves_doubt = link.hearing.doubt and not (inherited and not link.counters.fences)
-
-    stack.callback(leave)
+    lock.leaves_doubt = lambda: link.hearing.doubt and not (inherited and link.counters.fences == fences)
 
 
 def open_line(
@@ -221,7 +228,9 @@ def open_line(
     trace: Path | None = None,
     low_latency: bool = True,
     note: Callable[[str], None] = no_note,
+    waiting: Callable[[str], None] = no_note,
     on_lock: Callable[[PortLock], object] = _to_nobody,
+    on_lent: Callable[[LentTransport], object] | None = None,
 ) -> Transport:
     """Open the line alone, for who asks more than one PLC on it.
 
@@ -235,7 +244,9 @@ def open_line(
         trace: as for ``connect``.
         low_latency: as for ``connect``.
         note: as for ``connect``.
-        on_lock: is given the lock of a real line.
+        waiting: as for ``connect``.
+        on_lock: is given the lock of a real line, each time that it is taken.
+        on_lent: is given a line that can be lent; None if it shall not be. A modem's call goes on.
 
     Raises:
         UsageError, LineError: as ``connect``.
@@ -252,17 +263,23 @@ def open_line(
             f"{protocol} on a serial line: expected {data_bits} data bits, got the format {line.format}",
             hint=f"add --format {usual_format(protocol)} or {data_bits}N1, as the PLC's port is set",
         )
-    transport = _open(
+    opened = partial(
+        _open,
         where,
         protocol=protocol,
         station=station,
         line=line,
-        stack=stack,
-        lock_wait_s=lock_wait_s,
         low_latency=low_latency,
         note=note,
-        on_lock=on_lock,
+        waiting=waiting,
     )
+    if on_lent is None or where.kind is TargetKind.MODEM:
+        transport = opened(stack, lock_wait_s, on_lock)
+    else:
+        from fatektool.transport.lent import LentTransport
+
+        transport = lent = stack.enter_context(LentTransport(opened, lock_wait_s, on_lock))
+        on_lent(lent)
     if trace is None:
         return transport
     from fatektool.transport.trace import TracedTransport, open_trace
@@ -272,15 +289,16 @@ def open_line(
 
 def _open(
     where: Target,
+    stack: ExitStack,
+    lock_wait_s: float,
+    on_lock: Callable[[PortLock], object],
     *,
     protocol: str,
     station: int,
     line: LineSettings,
-    stack: ExitStack,
-    lock_wait_s: float,
     low_latency: bool,
     note: Callable[[str], None],
-    on_lock: Callable[[PortLock], object],
+    waiting: Callable[[str], None],
 ) -> Transport:
     if where.kind is not TargetKind.SIM:
         from fatektool.transport.open import open_transport
@@ -292,6 +310,7 @@ def _open(
             lock_wait_s=lock_wait_s,
             low_latency=low_latency,
             note=note,
+            waiting=waiting,
             on_lock=on_lock,
         )
     from os.path import realpath
@@ -304,9 +323,10 @@ def _open(
     if state is not None:
         from fatektool.transport.lock import PortLock
 
-        lock = PortLock(realpath(state), lock_wait_s)
+        lock = PortLock(realpath(state), lock_wait_s, waiting=waiting)
         lock.acquire()
         stack.callback(lock.release)
+        on_lock(lock)
     kept = state is not None and state.exists()  # the PLCs in a file have stations of their own
     simulation = build_simulation(
         None if kept else [station if 1 <= station <= _LAST_STATION else 1],

@@ -81,7 +81,7 @@ def backup_command(
         raise UsageError("--push goes with --history DIR")
     if folder is not None:
         require_folder(folder)
-    with nullcontext() if history is None else _opened(history) as kept:
+    with nullcontext() if history is None else _opened(history, voice) as kept:
         work = backup_work(voice, folder, kept, single_pass=single_pass, any_header=any_header)
         document, interrupted = run_fleet("backup", orders, alarms, voice, work)
     if history is not None and remote is not None and not interrupted:
@@ -90,10 +90,10 @@ def backup_command(
     return code or int("error" in document.get("push", {}))
 
 
-def _opened(folder: Path) -> History:
+def _opened(folder: Path, voice: Voice) -> History:
     from fatektool.history.history import History
 
-    return History(folder)
+    return History(folder, waiting=voice.say)
 
 
 def _push(history: Path, remote: str, voice: Voice) -> dict[str, Any]:

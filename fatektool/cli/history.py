@@ -95,7 +95,7 @@ def record_command(
 ) -> None:
     """Keep the backup FILE as the program of the PLC NAME, if its program changed. DIR is made if need be."""
     backup = load_backup(file)
-    found = History(folder, wait_s=lock_wait).record(name, backup)
+    found = History(folder, wait_s=lock_wait, waiting=voice.say).record(name, backup)
     for warning in found.warnings:
         voice.warn(warning)
     pushed = None

@@ -93,6 +93,7 @@ class Connection:
         needs: tuple[Command, ...] = (),
         writes: bool = False,
         limit: Limit | None = None,
+        lend: bool = False,
     ) -> Plc:
         """Open the line to one PLC.
 
@@ -101,6 +102,7 @@ class Connection:
             needs: commands that the protocol must have.
             writes: True if something is to be written, which a read-only line refuses before it is opened.
             limit: ends everything on this line when it is over.
+            lend: others may have the line between two rounds.
 
         Raises:
             LineReadOnly: something is to be written to a line that may only be read.
@@ -127,7 +129,9 @@ class Connection:
             read_only=self.read_only,
             modbus_map=self.modbus_map,
             low_latency=self.low_latency,
+            lend=lend,
             note=voice.detail,
+            waiting=voice.say,
         )
 
     def open_line(self, voice: Voice, stack: ExitStack) -> Transport:
@@ -145,6 +149,7 @@ class Connection:
             trace=self.trace,
             low_latency=self.low_latency,
             note=voice.detail,
+            waiting=voice.say,
         )
 
 

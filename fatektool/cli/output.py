@@ -65,7 +65,7 @@ class Voice:
     def say(self, text: str) -> None:
         """Tell the user something, on stderr."""
         if not self.quiet:
-            tell(text)
+            tell(self.name + text)
 
     def detail(self, text: str) -> None:
         """Tell a curious user something, on stderr."""

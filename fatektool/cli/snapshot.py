@@ -147,7 +147,8 @@ def take_command(
     elif output is not None:
         write_whole(Path(output), encoded(text), overwrite=True)
     if append is not None:
-        append_line(append, as_ndjson(snapshot), kept, wait_s=max(60.0, connection.lock_wait_s))
+        wait_s = max(60.0, connection.lock_wait_s)
+        append_line(append, as_ndjson(snapshot), kept, wait_s=wait_s, waiting=voice.say)
     if voice.json:
         click.echo(as_json(snapshot), nl=False)
     elif output is None and append is None:

@@ -17,7 +17,7 @@ from fatektool.cli.output import tell
 from fatektool.cli.read import SELECTION, shown
 from fatektool.cli.report import report_option, watch_report
 from fatektool.cli.snapshot import selected
-from fatektool.errors import FatektoolError, LineError, PlcError
+from fatektool.errors import FatektoolError, LineError, PlcError, TransportClosed
 from fatektool.jobs.snapshot import Snapshot, take_snapshot
 from fatektool.jobs.times import utc
 
@@ -42,7 +42,9 @@ _AROUND: Final = 4  # title, header, what is left out, and the line of the curso
 @click.command(
     "watch",
     epilog="Example: fatektool watch R12 D4:f32 Y0-Y7 --interval 0.5 -p /dev/ttyUSB0",
-    help=f"Show values live until Ctrl-C; without a terminal, print one NDJSON line a round.\n\n{SELECTION}",
+    help="Show values live until Ctrl-C; without a terminal, print one NDJSON line a round.\n\n"
+    "Another process that waits for the line gets it between two rounds.\n\n"
+    f"{SELECTION}",
 )
 @click.argument("elements", nargs=-1)
 @click.option("--spec", type=PATH, metavar="FILE.toml", help="What to read, with names, scales and units.")
@@ -72,7 +74,7 @@ def watch_command(
     wanted = selected(elements, spec, groups, whole=False)
     pace_s = next((pace for pace in (interval, wanted.interval_s) if pace is not None), 1.0)
     try:
-        with connection.open(voice) as plc, watch_report(report, plc, voice) as kept:
+        with connection.open(voice, lend=True) as plc, watch_report(report, plc, voice) as kept:
             rounds = _rounds(plc, wanted.items, pace_s, count, voice, kept=kept)
             last = _live(rounds, wanted.items) if sys.stdout.isatty() and not voice.json else _lines(rounds)
     except (FatektoolError, KeyboardInterrupt) as error:
@@ -123,9 +125,12 @@ def _rounds(
     due = time.monotonic()
     failures = done = 0
     while count is None or done < count:
+        broken = False
         try:
+            plc.take()
             snapshot = take_snapshot(plc, items)
         except LineError as error:
+            broken = isinstance(error, TransportClosed)
             failures += 1
             if kept is not None:
                 kept.fail(utc(), error.message)
@@ -140,7 +145,7 @@ def _rounds(
             yield snapshot
         due = max(due + interval_s, time.monotonic())
         if count is None or done < count:
-            time.sleep(max(0.0, due - time.monotonic()))
+            plc.lend(max(0.0, due - time.monotonic()), broken=broken)
 
 
 def _document(snapshot: Snapshot) -> dict[str, Any]:

@@ -19,6 +19,7 @@ from fatektool.history.writing import writing
 from fatektool.program.archive import Backup
 from fatektool.program.compare import Comparison, compare
 from fatektool.program.files import write_whole
+from fatektool.transport.base import no_note
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterator
@@ -71,12 +72,21 @@ class History:
     Args:
         folder: a bare git repository; made by the first ``record``.
         wait_s: how long ``record`` waits for another process that writes it, in seconds.
+        waiting: is told who that is.
         clock: seconds since 1970; for tests.
     """
 
-    def __init__(self, folder: Path, *, wait_s: float = 60.0, clock: Callable[[], float] = time.time) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        *,
+        wait_s: float = 60.0,
+        waiting: Callable[[str], None] = no_note,
+        clock: Callable[[], float] = time.time,
+    ) -> None:
         self.folder = folder
         self._wait_s = wait_s
+        self._waiting = waiting
         self._clock = clock
         self._turn = threading.Lock()
         self._keeps = False
@@ -115,7 +125,7 @@ class History:
                     seen = look(repository, name, backup)
                 if seen.same:
                     return unchanged(name, seen)
-            with writing(self.folder, self._wait_s), self._open() as repository:
+            with writing(self.folder, self._wait_s, self._waiting), self._open() as repository:
                 now = int(self._clock())
                 found = write(repository, name, backup, seen, now=now, wait_s=self._wait_s)
                 if found.revision is None or not is_due(repository):

@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING, Final
 from fatektool.errors import PortBusy, UsageError
 from fatektool.history.repository import is_repository
 from fatektool.program.files import file_error, sync_folder, write_synced
+from fatektool.transport.base import no_note
 from fatektool.transport.lock import PortLock
 
 if TYPE_CHECKING:
@@ -52,12 +53,13 @@ _NO_LINKS: Final = {
 
 
 @contextlib.contextmanager
-def writing(folder: Path, wait_s: float) -> Iterator[None]:
+def writing(folder: Path, wait_s: float, waiting: Callable[[str], None] = no_note) -> Iterator[None]:
     """The right of this process to write a history, made if it is not there.
 
     Args:
         folder: the repository.
         wait_s: how long to wait for another process.
+        waiting: is told who that is.
 
     Raises:
         UsageError: it cannot be made here.
@@ -70,7 +72,7 @@ def writing(folder: Path, wait_s: float) -> Iterator[None]:
             sync_folder(folder.parent)
         if not is_repository(folder):
             _require_ours(folder)
-        lock = PortLock(os.path.realpath(folder), wait_s)
+        lock = PortLock(os.path.realpath(folder), wait_s, waiting=waiting)
         lock.path = folder / LOCK  # beside what it guards: the same for all users and computers
         if not lock.path.exists():
             lock.path.touch(_LOCK_MODE)

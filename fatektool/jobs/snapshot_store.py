@@ -19,10 +19,11 @@ from typing import TYPE_CHECKING, Final
 from fatektool.errors import FatektoolError, FileWarning, UsageError
 from fatektool.jobs.times import stamp
 from fatektool.program.files import file_error, require_folder, require_place, sync, write_new, write_whole
+from fatektool.transport.base import no_note
 from fatektool.transport.lock import PortLock
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from fatektool.jobs.snapshot import Snapshot
 
@@ -126,7 +127,13 @@ def _drop_files(folder: Path, station: int, suffix: str, keep: Keep, now: dateti
 
 
 def append_line(
-    path: Path, line: str, keep: Keep | None, *, now: datetime | None = None, wait_s: float = 60.0
+    path: Path,
+    line: str,
+    keep: Keep | None,
+    *,
+    now: datetime | None = None,
+    wait_s: float = 60.0,
+    waiting: Callable[[str], None] = no_note,
 ) -> None:
     """Append one line, under a lock, in one write, on disk when this returns.
 
@@ -136,6 +143,7 @@ def append_line(
         keep: what is kept of the file's snapshots; None for all.
         now: the present, for tests.
         wait_s: how long to wait for another process that appends.
+        waiting: is told who that is.
 
     Raises:
         UsageError: the file cannot be written, or holds something else.
@@ -146,7 +154,7 @@ def append_line(
         FileWarning: the line is written, and old ones could not be dropped.
     """
     real = require_lines(path, keep)
-    lock = PortLock(str(real), wait_s)
+    lock = PortLock(str(real), wait_s, waiting=waiting)
     lock.acquire()
     try:
         require_lines(path, keep)

@@ -8,7 +8,12 @@ behind stops nobody, and cron is never held up by one.
 What it says when the lock is free tells one thing: the holder before was killed, or left without the answer
 to its last request. That answer may still come, to whoever is next: ``found_doubt`` is True then.
 
-The file is made for all users to lock: one port, one file, whoever asks.
+The file is made for all users to lock, in a folder in which all users may make files: one port, one file,
+whoever asks. Where the system has no such folder, or gives a service a ``/tmp`` of its own, a folder for all
+is to be named in FATEKTOOL_LOCK_DIR.
+
+Who waits says so by a second lock, on the queue beside the first, so that a holder who could let go knows
+(``wanted``).
 """
 
 from __future__ import annotations
@@ -21,9 +26,12 @@ import sys
 import threading
 import time
 from binascii import crc32
+from dataclasses import dataclass
+from math import inf
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import PortBusy, UsageError
+from fatektool.transport.base import no_note
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -35,22 +43,79 @@ else:
     import fcntl
 
 _POLL_S: Final = 0.05
-_SHARED: Final = ("/run/lock", "/var/lock")
+_SHARED: Final = ("/run/lock", "/var/lock", "/tmp")  # noqa: S108  # files are made there under O_EXCL
+_FOR_ALL: Final = 0o003
 _PAST_THE_TEXT: Final = 4096
+_MOST_TEXT: Final = 1000
+_LONGEST_COMMAND: Final = 200
 _held: set[str] = set()
 
 
 def lock_folder() -> str:
-    """Where lock files lie: the system's shared folder for them, else the one for temporary files."""
+    """Where lock files lie: the first folder in which *every* user may make files, whoever asks.
+
+    That root may write to ``/run/lock`` is not enough: others would lock elsewhere.
+    """
     named = os.environ.get("FATEKTOOL_LOCK_DIR")
     if named:
         return named
-    for folder in _SHARED:
-        if os.access(folder, os.W_OK | os.X_OK):
-            return folder
+    return shared_folder() or _own_folder()
+
+
+def shared_folder() -> str | None:
+    """The folder for all users; None where there is none, as on Windows."""
+    for folder in _SHARED if os.name == "posix" else ():
+        with contextlib.suppress(OSError):
+            if os.stat(folder).st_mode & _FOR_ALL == _FOR_ALL:  # noqa: PTH116  # pathlib is loaded later
+                return folder
+    return None
+
+
+def _own_folder() -> str:
     from tempfile import gettempdir
 
     return gettempdir()
+
+
+@dataclass(frozen=True, slots=True)
+class Holder:
+    """Who has a lock, as far as its file tells.
+
+    Attributes:
+        pid: the process.
+        since: when it took the lock, UTC, RFC 3339; empty if unknown.
+        command: its command line, cut short; empty if unknown.
+    """
+
+    pid: int
+    since: str = ""
+    command: str = ""
+
+    def __str__(self) -> str:
+        told = ", ".join(part for part in (self.command, self.since and f"since {self.since}") if part)
+        return f"process {self.pid}" + (f" ({told})" if told else "")
+
+    @classmethod
+    def present(cls) -> Holder:
+        """This process, from now on."""
+        program = sys.argv[0] if sys.argv else ""
+        folder, name = os.path.split(program)
+        words = [os.path.split(folder)[1] if name == "__main__.py" else name, *sys.argv[1:]]
+        command = " ".join(" ".join(words).split())[:_LONGEST_COMMAND]
+        return cls(os.getpid(), time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()), command)
+
+    @classmethod
+    def parse(cls, text: str) -> Holder | None:
+        """Read a lock file's lines: process id, time, command; None if it names nobody."""
+        lines = [*text.split("\n"), "", ""]
+        try:
+            return cls(int(lines[0]), lines[1], lines[2])
+        except ValueError:
+            return None
+
+    def to_text(self) -> str:
+        """The lock file's lines."""
+        return f"{self.pid}\n{self.since}\n{self.command}\n"
 
 
 class PortLock:
@@ -59,6 +124,7 @@ class PortLock:
     Args:
         resource: what is locked, the same for everyone who means it: a device's real path, ``ip:port``.
         wait_s: how long to wait for another process.
+        waiting: is told, at once, whom it waits for.
         clock: seconds; for tests.
         sleep: waits so many seconds; for tests.
     """
@@ -68,21 +134,24 @@ class PortLock:
         resource: str,
         wait_s: float,
         *,
+        waiting: Callable[[str], object] = no_note,
         clock: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
         self.resource = resource
         self._wait_s = wait_s
+        self._waiting = waiting
         self._clock = clock
         self._sleep = sleep
+        self._queue: PortLock | None = None
         readable = re.sub(r"[^A-Za-z0-9.]+", "-", resource)[-60:].strip("-")
         told_apart = crc32(resource.encode(errors="surrogateescape"))  # a-b, a/b; two alike would only wait
         self.path: str | Path = f"{lock_folder()}/fatektool-{readable}-{told_apart:08x}.lock"
         self._descriptor: int | None = None
         self.found_doubt = False
         """True, once taken, if the holder before may have left an answer on its way."""
-        self.leaves_doubt = False
-        """Set by the holder: the same of itself."""
+        self.leaves_doubt: Callable[[], bool] = bool
+        """Set by the holder: the same of itself, asked when the lock is given back."""
 
     def acquire(self) -> None:
         """Take the lock, waiting if need be.
@@ -90,16 +159,43 @@ class PortLock:
         Raises:
             PortBusy: another process (or another part of this one) has it and keeps it.
         """
+        if self._try():
+            return
         deadline = self._clock() + self._wait_s
-        while not self._try():
-            if not self._clock() < deadline:  # NaN is no time to wait
-                raise self._busy()
-            self._sleep(_POLL_S)
+        if self._wait_s > 0:
+            most = f", for {self._wait_s:g} s at most" if self._wait_s < inf else ""
+            self._waiting(f"{self.resource} is in use by {self.holder() or 'another process'}: waiting{most}")
+        queue = self._waiting_line()
+        try:
+            while not self._try():
+                if not self._clock() < deadline:  # NaN is no time to wait
+                    raise self._busy()
+                with contextlib.suppress(UsageError):
+                    queue._try()  # noqa: SLF001  # its own kind; one in the queue is enough
+                self._sleep(_POLL_S)
+        finally:
+            queue.release()
+
+    def wanted(self) -> bool:
+        """True if somebody waits for this lock."""
+        queue = self._waiting_line()
+        if not os.path.exists(queue.path):  # noqa: PTH110  # pathlib is loaded later
+            return False
+        with contextlib.suppress(UsageError):
+            if queue._try():  # noqa: SLF001  # its own kind
+                queue.release()
+                return False
+        return True
+
+    def _waiting_line(self) -> PortLock:
+        if self._queue is None:
+            self._queue = PortLock(f"{self.resource} queue", 0)
+        return self._queue
 
     def release(self) -> None:
         """Give the lock back; again is fine."""
         if self._descriptor is not None:
-            if not self.leaves_doubt:
+            if not self.leaves_doubt():
                 with contextlib.suppress(OSError):
                     os.ftruncate(self._descriptor, 0)
             os.close(self._descriptor)
@@ -124,7 +220,7 @@ class PortLock:
             os.lseek(descriptor, 0, os.SEEK_SET)
             os.ftruncate(descriptor, 0)
             self.found_doubt = bool(left)
-            os.write(descriptor, f"{os.getpid()}\n".encode())
+            os.write(descriptor, Holder.present().to_text().encode(errors="backslashreplace"))
         return True
 
     def _open(self) -> int:
@@ -164,22 +260,23 @@ class PortLock:
         finally:
             new.unlink(missing_ok=True)
 
-    def holder(self) -> int | None:
-        """The process that holds the lock, as far as its file tells."""
-        from pathlib import Path
-
+    def holder(self) -> Holder | None:
+        """Who holds the lock, as far as its file tells."""
         try:
-            return int(Path(self.path).read_bytes()[:20])
-        except (OSError, ValueError):
+            with open(self.path, "rb") as file:  # noqa: PTH123  # pathlib is loaded later
+                return Holder.parse(file.read(_MOST_TEXT).decode(errors="replace"))
+        except OSError:
             return None
 
     def _busy(self) -> PortBusy:
-        pid = self.holder()
-        who = f"process {pid}" if pid else "another process"
+        found = self.holder()
+        stop = f" or stop process {found.pid}" if found else ""
         return PortBusy(
-            f"{self.resource} is in use by {who}: waited {self._wait_s:g} s",
-            hint=f"let it end{f' or stop process {pid}' if pid else ''}, or wait longer with --lock-wait",
-            holder=pid,
+            f"{self.resource} is in use by {found or 'another process'}: waited {self._wait_s:g} s",
+            hint=f"let it end{stop}, or wait longer with --lock-wait",
+            holder=found and found.pid,
+            command=found and found.command,
+            since=found and found.since,
             resource=self.resource,
         )
 

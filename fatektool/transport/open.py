@@ -28,6 +28,7 @@ def open_transport(
     lock_wait_s: float = 10.0,
     low_latency: bool = True,
     note: Callable[[str], None] = no_note,
+    waiting: Callable[[str], None] = no_note,
     on_lock: Callable[[PortLock], object] = lambda _lock: None,
 ) -> Transport:
     """Lock a serial port, TCP or UDP target and open it; a modem calls and is connected.
@@ -39,6 +40,7 @@ def open_transport(
         lock_wait_s: how long to wait for another process.
         low_latency: ask the driver of a serial port to hand on at once what it receives, on Linux.
         note: is told what a curious user may want to know.
+        waiting: is told whom this process waits for.
         on_lock: is given the lock.
 
     Raises:
@@ -50,7 +52,7 @@ def open_transport(
 
         named = target.is_url or os.name == "nt"  # COM3 is a name, not a path
         device = target.path.upper() if named else os.path.realpath(target.path)
-        on_lock(_lock(device, lock_wait_s, stack))
+        on_lock(_lock(device, lock_wait_s, stack, waiting))
         port = stack.enter_context(open_serial(target.path, line, low_latency=low_latency, note=note))
         if target.call is None:
             return port
@@ -63,7 +65,7 @@ def open_transport(
         from fatektool.transport.sockets import resolve
 
         address = resolve(target.host, target.port)
-        on_lock(_lock(f"{address[0]}:{address[1]}", lock_wait_s, stack))
+        on_lock(_lock(f"{address[0]}:{address[1]}", lock_wait_s, stack, waiting))
         if target.kind is TargetKind.TCP:
             from fatektool.transport.tcp import TcpTransport
 
@@ -74,8 +76,8 @@ def open_transport(
     raise UsageError(f"target {target.text!r} is no line that can be opened here")
 
 
-def _lock(resource: str, wait_s: float, stack: ExitStack) -> PortLock:
-    lock = PortLock(resource, wait_s)
+def _lock(resource: str, wait_s: float, stack: ExitStack, waiting: Callable[[str], None]) -> PortLock:
+    lock = PortLock(resource, wait_s, waiting=waiting)
     lock.acquire()
     stack.callback(lock.release)
     return lock

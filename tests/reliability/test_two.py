@@ -192,7 +192,11 @@ def test_a_holder_that_stands_still_is_named(tmp_path: Path) -> None:
             error = done.document("error")["error"]
             assert error["kind"] == "port_busy"
             assert error["details"]["holder"] == holder.pid
-            assert f"is in use by process {holder.pid}: waited 0.1 s" in one_line(done.err)
+            at_once, at_last = done.err.splitlines()
+            assert f"is in use by process {holder.pid} (fatektool watch R0 -p " in at_once
+            assert at_once.endswith("Z): waiting, for 0.1 s at most")
+            assert "Z): waited 0.1 s; let it end or stop process" in at_last
+            assert error["details"]["command"].startswith("fatektool watch R0 -p ")
             assert "--lock-wait" in error["hint"]
         finally:
             holder.kill()
@@ -232,9 +236,9 @@ def shared(monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
         yield Path(name)
 
 
-def as_user(user: int, *words: str) -> subprocess.Popen[str]:
+def as_user(user: int, *words: str, script: str = TRY) -> subprocess.Popen[str]:
     return subprocess.Popen(
-        [sys.executable, "-c", TRY.format(user=user), *words],
+        [sys.executable, "-c", script.format(user=user), *words],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         text=True,
@@ -277,6 +281,25 @@ def test_a_lock_file_of_another_user_that_may_only_be_read(
         assert tried(other).startswith("PortBusy /dev/ttyUSB0 is in use by")
         holder.kill()
     assert tried(other) == "locked"
+
+
+@as_root
+@pytest.mark.parametrize("users", [(0, NOBODY), (NOBODY, 0)])
+def test_a_lock_folder_of_root_alone_is_no_place_for_root_either(
+    users: tuple[int, int], shared: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (shared / "run").mkdir(0o755)
+    (shared / "all").mkdir()
+    (shared / "all").chmod(0o1777)
+    monkeypatch.delenv("FATEKTOOL_LOCK_DIR")
+    places = f"from fatektool.transport import lock; lock._SHARED = ['{shared}/run', '{shared}/all']\n"
+    first, second = users
+    with as_user(first, "hold", script=places + TRY) as holder:
+        assert holder.stdout is not None
+        assert holder.stdout.readline() == "locked\n"
+        with as_user(second, script=places + TRY) as other:
+            assert other.communicate()[0].startswith("PortBusy /dev/ttyUSB0 is in use by process")
+        holder.kill()
 
 
 @as_root

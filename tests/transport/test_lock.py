@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -72,6 +73,11 @@ class Clock:
         self.now += seconds
 
 
+def held_by(lock: PortLock) -> int | None:
+    found = lock.holder()
+    return None if found is None else found.pid
+
+
 def held_by_nobody(resource: str = RESOURCE) -> bool:
     lock = PortLock(resource, 0)
     try:
@@ -83,18 +89,69 @@ def held_by_nobody(resource: str = RESOURCE) -> bool:
 
 
 def test_another_process_is_named() -> None:
-    clock = Clock()
+    """At once, and again in the error: which process, which command, since when."""
+    clock, told = Clock(), list[str]()
     with holding() as process:
-        lock = PortLock(RESOURCE, 2.0, clock=clock, sleep=clock.sleep)
+        lock = PortLock(RESOURCE, 2.0, waiting=told.append, clock=clock, sleep=clock.sleep)
         with pytest.raises(PortBusy) as caught:
             lock.acquire()
         error = caught.value
-        assert error.message == f"{RESOURCE} is in use by process {process.pid}: waited 2 s"
+        holder = lock.holder()
+        assert holder is not None
+        assert (holder.pid, holder.command) == (process.pid, f"-c {RESOURCE}")
+        assert re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", holder.since)
+        who = f"process {process.pid} (-c {RESOURCE}, since {holder.since})"
+        assert told == [f"{RESOURCE} is in use by {who}: waiting, for 2 s at most"]
+        assert error.message == f"{RESOURCE} is in use by {who}: waited 2 s"
         assert "--lock-wait" in str(error.hint)
-        assert error.details == {"holder": process.pid, "resource": RESOURCE}
+        assert error.details == {
+            "holder": process.pid,
+            "command": holder.command,
+            "since": holder.since,
+            "resource": RESOURCE,
+        }
         assert error.exit_code == 3
     assert 102.0 <= clock.now < 102.1
     assert max(clock.slept) <= 0.1
+
+
+def test_a_holder_knows_that_somebody_waits() -> None:
+    """Only while somebody does; a waiting process that dies leaves nothing behind."""
+    lock = PortLock(RESOURCE, 0)
+    lock.acquire()
+    assert not lock.wanted()
+    waiter = HOLDER.replace(", 0)", ", 60, waiting=lambda text: print(text, flush=True))")
+    with subprocess.Popen(
+        [sys.executable, "-c", waiter, RESOURCE], stdout=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline().startswith(f"{RESOURCE} is in use by process {os.getpid()} (")
+        while not lock.wanted():
+            assert process.poll() is None
+        process.kill()
+    assert not lock.wanted()
+    lock.release()
+    assert held_by_nobody()
+
+
+@pytest.mark.parametrize(
+    ("argv", "command"),
+    [
+        (["/usr/bin/fatektool", "watch", "R0"], "fatektool watch R0"),
+        (["/opt/x/fatektool/__main__.py", "status"], "fatektool status"),
+        (["a\nb", "c\td"], "a b c d"),
+        (["x" * 5000], "x" * 200),
+        ([], ""),
+    ],
+)
+def test_a_command_on_one_line(argv: list[str], command: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "argv", argv)
+    lock = PortLock(RESOURCE, 0)
+    lock.acquire()
+    holder = lock.holder()
+    lock.release()
+    assert holder is not None
+    assert holder.command == command
 
 
 def test_another_process_is_waited_for() -> None:
@@ -109,7 +166,7 @@ def test_another_process_is_waited_for() -> None:
         lock = PortLock(RESOURCE, 10.0, clock=clock, sleep=sleep)
         lock.acquire()
         assert len(clock.slept) == 3
-        assert lock.holder() == os.getpid()
+        assert held_by(lock) == os.getpid()
         lock.release()
 
 
@@ -127,9 +184,9 @@ def test_a_lock_dies_with_its_process() -> None:
         process.kill()
         process.wait()
         lock = PortLock(RESOURCE, 0)
-        assert lock.holder() == process.pid  # the file is still there, and means nothing
+        assert held_by(lock) == process.pid  # the file is still there, and means nothing
         lock.acquire()
-        assert lock.holder() == os.getpid()
+        assert held_by(lock) == os.getpid()
         lock.release()
 
 
@@ -146,7 +203,7 @@ def test_what_a_file_left_behind_says_means_nothing(content: bytes) -> None:
     lock = PortLock(RESOURCE, 0)
     Path(lock.path).write_bytes(content)
     lock.acquire()
-    assert lock.holder() == os.getpid()
+    assert held_by(lock) == os.getpid()
     lock.release()
 
 
@@ -181,7 +238,7 @@ def test_a_failed_try_takes_nothing_from_the_holder() -> None:
         second.acquire()
     second.release()
     assert not held_by_nobody()
-    assert first.holder() == os.getpid()
+    assert held_by(first) == os.getpid()
     first.release()
 
 
@@ -297,8 +354,18 @@ def test_where_locks_lie(lock_folder: Path, monkeypatch: pytest.MonkeyPatch, tmp
     folder = lock_module.lock_folder
     assert folder() == str(lock_folder)
     monkeypatch.setenv("FATEKTOOL_LOCK_DIR", "")
-    monkeypatch.setattr(lock_module, "_SHARED", (str(tmp_path / "nowhere"), str(tmp_path)))
-    assert folder() == str(tmp_path)
     monkeypatch.setattr(lock_module, "_SHARED", ())
     monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path / "temporary"))
     assert folder() == str(tmp_path / "temporary")
+
+
+@posix
+def test_one_place_for_all_users(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """A folder into which this user may write and others may not is none, though it comes first."""
+    monkeypatch.setenv("FATEKTOOL_LOCK_DIR", "")
+    for name, mode in (("own", 0o755), ("unreached", 0o776), ("all", 0o1777)):
+        (tmp_path / name).mkdir()
+        (tmp_path / name).chmod(mode)
+    places = [str(tmp_path / name) for name in ("nowhere", "own", "unreached", "all")]
+    monkeypatch.setattr(lock_module, "_SHARED", places)
+    assert lock_module.lock_folder() == str(tmp_path / "all")
