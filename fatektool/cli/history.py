@@ -79,7 +79,9 @@ def history_command() -> None:
 )
 @click.argument("name")
 @click.argument("file", type=PATH)
-@click.option("--push", "remote", metavar="REMOTE", help="Then push: a folder, ssh://, https://, host:path.")
+@click.option(
+    "--push", "remote", metavar="REMOTE", help="Then push: a folder, ssh://, https://, host:path, a remote."
+)
 @click.option(
     "--lock-wait",
     type=Seconds(0, 86400),

@@ -129,7 +129,7 @@ class Repository:
             Exception
         ) as error:  # damaged bytes come out of dulwich as anything: KeyError, AssertionError, …
             reason = " ".join(f"{type(error).__name__} {error}".split())[:200]
-            _let_go(error)
+            let_go(error)
             raise self.damaged(f"{what} cannot be read ({reason})") from error
 
     def damaged(self, what: str) -> DataError:
@@ -268,8 +268,8 @@ class Repository:
             start = found.parents[0] if found.parents else None
 
 
-def _let_go(error: BaseException | None) -> None:
-    """Drop the frames that an error holds: views of a pack in them would keep it from being closed."""
+def let_go(error: BaseException | None) -> None:
+    """Drop the frames that an error holds: a pack or a socket in them could not be closed."""
     while error is not None:
         clear_frames(error.__traceback__)
         error.__traceback__ = None

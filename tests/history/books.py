@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 ONE = backup(program(400, seed=1))
 TWO = replace(ONE, program=changed(ONE.program, 3, 5), created="2026-11-23T03:15:00Z")
 THREE = replace(ONE, program=changed(TWO.program, 6), created="2026-11-24T03:15:00Z")
+GIT = shutil.which("git") or "git"  # some tests have none in PATH
 NOON = 1795348800  # 2026-11-22T12:00:00Z
 DAY = 86400
 
@@ -24,7 +26,7 @@ DAY = 86400
 def git(folder: Path, *words: str, code: int = 0) -> str:
     """Run git in a folder; its output, both streams."""
     done = subprocess.run(
-        ["git", "-C", str(folder), *words], capture_output=True, text=True, check=False, encoding="utf-8"
+        [GIT, "-C", str(folder), *words], capture_output=True, text=True, check=False, encoding="utf-8"
     )
     assert done.returncode == code, done
     return done.stdout + done.stderr

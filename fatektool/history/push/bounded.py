@@ -1,0 +1,96 @@
+"""A program that is not waited for without an end, and cannot ask anybody anything."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from tempfile import TemporaryFile
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+_LOOK_S: Final = 1.0
+_CLEAN_UP_S: Final = 5.0
+_OWN_GROUP: Final = getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0) | getattr(
+    subprocess, "CREATE_NO_WINDOW", 0
+)
+
+
+class Ended(NamedTuple):
+    """What a program left.
+
+    Attributes:
+        code: its exit code; None if it was ended because nothing was heard of it.
+        out: what it wrote to stdout.
+        err: what it wrote to stderr.
+    """
+
+    code: int | None
+    out: str
+    err: str
+
+
+def run_bounded(command: Sequence[str], environment: Mapping[str, str], silence_s: float) -> Ended:
+    """Run a program without a terminal, and end it with all that it started if it falls silent.
+
+    What it writes goes to files: a pipe would be held open by what it leaves in the background.
+
+    Args:
+        command: the program and its words.
+        environment: all of its environment.
+        silence_s: how long it may write nothing, in seconds.
+
+    Raises:
+        OSError: it cannot be started.
+    """
+    with TemporaryFile() as out, TemporaryFile() as err:
+        process = subprocess.Popen(  # noqa: S603  # git, and words that it takes for no command of a shell
+            command, stdin=subprocess.DEVNULL, stdout=out, stderr=err, env=dict(environment),
+            start_new_session=True, creationflags=_OWN_GROUP,
+        )  # fmt: skip
+        try:
+            code = _wait(process, (out.fileno(), err.fileno()), silence_s)
+        finally:
+            _end(process)
+        texts = []
+        for file in (out, err):
+            file.seek(0)
+            texts.append(file.read().decode("utf-8", "replace"))
+        return Ended(code, texts[0], texts[1])
+
+
+def _wait(process: subprocess.Popen[bytes], files: tuple[int, int], silence_s: float) -> int | None:
+    heard, since = -1, time.monotonic()
+    while True:
+        try:
+            return process.wait(min(_LOOK_S, silence_s))
+        except subprocess.TimeoutExpired:
+            size = sum(os.fstat(file).st_size for file in files)
+            now = time.monotonic()
+            if size != heard:
+                heard, since = size, now
+            elif now - since >= silence_s:
+                return None
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    """End it, and what it started: kindly first, so that git takes its lock files away."""
+    if process.poll() is not None:
+        return
+    _signal(process, signal.SIGTERM)
+    try:
+        process.wait(_CLEAN_UP_S)
+    except subprocess.TimeoutExpired:
+        _signal(process, getattr(signal, "SIGKILL", signal.SIGTERM))
+        process.wait()
+
+
+def _signal(process: subprocess.Popen[bytes], number: signal.Signals) -> None:
+    if sys.platform == "win32":
+        process.kill()
+    else:
+        os.killpg(process.pid, number)
