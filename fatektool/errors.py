@@ -96,7 +96,18 @@ class TransportTimeout(TransportError):
 
 
 class TransportClosed(TransportError):
-    """The connection or the device is gone."""
+    """The connection or the device is gone.
+
+    Args:
+        message: what happened.
+        hint: the next step.
+        may_return: True for a connection that was refused, reset or closed by the other side, which may take
+            the next one in a moment.
+    """
+
+    def __init__(self, message: str, *, hint: str | None = None, may_return: bool = False) -> None:
+        super().__init__(message, hint=hint)
+        self.may_return = may_return
 
 
 class PortBusy(LineError):

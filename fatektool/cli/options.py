@@ -186,7 +186,7 @@ def connection_options_but_format(function: F) -> F:
         metavar="TARGET",
         envvar="FATEKTOOL_PORT",
         shell_complete=complete_target,
-        help="Where the PLC is: /dev/ttyUSB0, COM3, tcp://HOST[:500], udp://HOST[:500], a pyserial URL, "
+        help="Where the PLC is: /dev/ttyUSB0, COM3, tcp://HOST[:500], udp://HOST[:500], rfc2217://HOST:PORT, "
         "modem:/dev/ttyUSB0?number=0228082192, sim: (a simulated PLC), sim:FILE, "
         "or its name in the inventory.  [env: FATEKTOOL_PORT]",
     )

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Final
 
 from fatektool.connection import codec_named
 from fatektool.errors import LineError
+from fatektool.transport.serial_url import host_of
+from fatektool.transport.serial_url import line_of as serial_line
 from fatektool.transport.target import Target, TargetKind
 
 if TYPE_CHECKING:
@@ -29,10 +31,10 @@ def line_of(target: str, protocol: str, name: str, addresses: dict[str, str]) ->
     where = Target.parse(target, default_port=codec_named(protocol).default_tcp_port)
     if where.kind is TargetKind.SIM:
         return f"sim:{os.path.realpath(where.path)}" if where.path else f"sim:{name}"
-    if where.kind in {TargetKind.TCP, TargetKind.UDP}:
-        return f"{addresses.get(where.host, where.host.lower())}:{where.port}"
-    named = where.is_url or os.name == "nt"  # COM3 is a name, not a path
-    return where.path.upper() if named else os.path.realpath(where.path)
+    gateway = _host(where)
+    if gateway is not None:
+        return f"{addresses.get(gateway[0], gateway[0])}:{gateway[1]}"
+    return serial_line(where.path)
 
 
 def addresses_of(targets: Iterable[str], wait_s: float = _LOOK_UP_S) -> dict[str, str]:
@@ -40,7 +42,8 @@ def addresses_of(targets: Iterable[str], wait_s: float = _LOOK_UP_S) -> dict[str
 
     All are looked up at once. One that is not found in time is left out, and stands for itself then.
     """
-    hosts = {where.host for where in map(_parsed, targets) if where.host and not _is_address(where.host)}
+    gateways = filter(None, (_host(_parsed(target)) for target in targets))
+    hosts = {host for host, _ in gateways if not _is_address(host)}
     found: dict[str, str] = {}
 
     def look_up(host: str) -> None:
@@ -62,6 +65,16 @@ def addresses_of(targets: Iterable[str], wait_s: float = _LOOK_UP_S) -> dict[str
 
 def _parsed(target: str) -> Target:
     return Target.parse(target, default_port=1)
+
+
+def _host(where: Target) -> tuple[str, int] | None:
+    """Host and port that a target leads to; None for one that leads to none, or is wrong."""
+    if where.kind in {TargetKind.TCP, TargetKind.UDP}:
+        return where.host.lower(), where.port
+    try:
+        return host_of(where.path) if where.on_serial_port else None
+    except LineError:  # said again, with the PLC's name, when it is asked
+        return None
 
 
 def _is_address(host: str) -> bool:

@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 WRITE_TIMEOUT_S: Final = 5.0
 """How long a medium may refuse to take a request: a flow control that never lets go, a dead pty."""
 
+MOST_SAID: Final = 120
+"""So many of the first bytes of a connection are kept: in them a gateway may say why it closes it."""
+
 DRAIN_LIMIT: Final = 1 << 16
 """A line that babbles on is not drained for ever."""
 

@@ -5,7 +5,6 @@ Each medium's file is loaded only when its kind of target is named.
 
 from __future__ import annotations
 
-import os
 from typing import TYPE_CHECKING
 
 from fatektool.errors import UsageError
@@ -50,9 +49,7 @@ def open_transport(
     if target.on_serial_port:
         from fatektool.transport.serial_port import open_serial
 
-        named = target.is_url or os.name == "nt"  # COM3 is a name, not a path
-        device = target.path.upper() if named else os.path.realpath(target.path)
-        on_lock(_lock(device, lock_wait_s, stack, waiting))
+        on_lock(_lock(_serial_line(target.path), lock_wait_s, stack, waiting))
         port = stack.enter_context(open_serial(target.path, line, low_latency=low_latency, note=note))
         if target.call is None:
             return port
@@ -74,6 +71,19 @@ def open_transport(
 
         return stack.enter_context(UdpTransport(target.text, address))
     raise UsageError(f"target {target.text!r} is no line that can be opened here")
+
+
+def _serial_line(path: str) -> str:
+    """The line of a serial target: a gateway's address where a URL leads to one, else its device or URL."""
+    from fatektool.transport.serial_url import host_of, line_of
+
+    gateway = host_of(path)
+    if gateway is None:
+        return line_of(path)
+    from fatektool.transport.sockets import resolve
+
+    address = resolve(*gateway)
+    return f"{address[0]}:{address[1]}"
 
 
 def _lock(resource: str, wait_s: float, stack: ExitStack, waiting: Callable[[str], None]) -> PortLock:

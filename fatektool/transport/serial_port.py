@@ -15,22 +15,22 @@ on, so it is opened as 8N1, at the speed asked for: nothing is lost, as a pty's 
 from __future__ import annotations
 
 import contextlib
-import errno
 import os
 import sys
 from typing import TYPE_CHECKING, Any, Final
 
-from fatektool.errors import LineError, PortBusy, TransportClosed, TransportTimeout
-from fatektool.transport.base import DRAIN_LIMIT, WRITE_TIMEOUT_S, LineSettings, Transport, no_note
+from fatektool.errors import TransportClosed, TransportTimeout
+from fatektool.transport.base import DRAIN_LIMIT, MOST_SAID, WRITE_TIMEOUT_S, LineSettings, Transport, no_note
+from fatektool.transport.said import said_text
+from fatektool.transport.serial_errors import gateway_closed, network_error, open_error
+from fatektool.transport.serial_settings import PORT_ERRORS, check_parity, of_pty, set_dtr, set_line
+from fatektool.transport.serial_url import SEARCH, device_of, host_of
 from fatektool.transport.wait import readable, writable
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
 _SLICE_S: Final = 0.02
-_PTY_FORMAT: Final = "8N1"
-_PORT_ERRORS: Final = (OSError, ValueError, NotImplementedError)
-"""What pyserial raises: SerialException is an OSError, and the last is its word for what a system lacks."""
 
 
 def open_serial(
@@ -49,148 +49,103 @@ def open_serial(
         PortBusy: another program has the port open.
         LineError: the port is not there, may not be used, or does not take this speed or format.
     """
-    pty = _is_pty(target)
+    host = host_of(target)
+    device = None if host else device_of(target)
+    pty = device is not None and _is_pty(device)
+    if target.lower().startswith(SEARCH) and device is not None:
+        note(f"{target} is {device}")
+        return open_serial(device, line, low_latency=low_latency, note=note)
     if pty:
         note(f"{target} is a pseudo terminal, which has no {line.format}: opened as 8N1")
-    port = _open(target, _of_pty(line) if pty else line)
+    port = _open(target, of_pty(line) if pty else line)
     if low_latency and not pty and sys.platform == "linux" and "://" not in target:
         try:
             port.set_low_latency_mode(True)
-        except _PORT_ERRORS as error:
+        except PORT_ERRORS as error:
             note(f"{target}: the driver has no low latency mode: {error}")
     if hasattr(port, "fd") and os.name == "posix" and "://" not in target:  # spy:// wants to be asked
         if not (pty or check_parity(port.fd, line)):
             note(f"{target}: the driver does not check the parity of what it receives")
         return DeviceTransport(target, line, port, pty=pty)
-    return SerialTransport(target, line, port)
-
-
-def _of_pty(line: LineSettings) -> LineSettings:
-    return LineSettings(line.baud, _PTY_FORMAT)
-
-
-def _set_line(target: str, line: LineSettings, port: Any) -> None:
-    """Another speed and format for an open port."""
-    try:
-        port.apply_settings(
-            {
-                "baudrate": line.baud,
-                "bytesize": line.data_bits,
-                "parity": line.parity,
-                "stopbits": line.stop_bits,
-            }
-        )
-    except _PORT_ERRORS as error:
-        raise _open_error(target, line, error) from error
-    except Exception as error:  # as when opening
-        if type(error).__name__ != "error" and "://" not in target:
-            raise
-        raise _open_error(target, line, error) from error
-
-
-def check_parity(descriptor: int, line: LineSettings) -> bool:
-    """Have the driver check the parity of what it receives, or leave that if the line has none.
-
-    Args:
-        descriptor: of an open port.
-        line: its speed and format.
-
-    Returns:
-        False if the driver cannot.
-    """
-    import termios
-
-    try:
-        settings = termios.tcgetattr(descriptor)
-        settings[0] &= ~(termios.INPCK | termios.IGNPAR | termios.PARMRK)
-        if line.parity != "N":
-            settings[0] |= termios.INPCK
-        termios.tcsetattr(descriptor, termios.TCSANOW, settings)
-    except termios.error:
-        return False
-    return True
-
-
-def _set_dtr(port: Any, *, on: bool) -> bool:
-    try:
-        port.dtr = on
-    except (OSError, ValueError, TypeError, AttributeError):  # a pty has none; a closed port has none either
-        return False
-    return True
+    return SerialTransport(target, line, port, pty=pty, again=None if host is None else _open)
 
 
 def _open(target: str, line: LineSettings) -> Any:
     import serial
 
+    settings: dict[str, Any] = {
+        "baudrate": line.baud,
+        "bytesize": line.data_bits,
+        "parity": line.parity,
+        "stopbits": line.stop_bits,
+        "timeout": _SLICE_S,
+    }
+    if target.lower().startswith("rfc2217://"):
+        from fatektool.transport.rfc2217 import Rfc2217Port
+
+        gateway = Rfc2217Port(target, WRITE_TIMEOUT_S, **settings)
+        try:
+            gateway.open()
+        except PORT_ERRORS as error:
+            lost = gateway.lost or isinstance(error, ConnectionError)
+            raise network_error(target, line, error, lost=lost, said=gateway.said) from error
+        return gateway
     try:
-        return serial.serial_for_url(
-            target,
-            baudrate=line.baud,
-            bytesize=line.data_bits,
-            parity=line.parity,
-            stopbits=line.stop_bits,
-            timeout=_SLICE_S,
-            write_timeout=WRITE_TIMEOUT_S,
-            exclusive=True,
-        )
-    except _PORT_ERRORS as error:
-        raise _open_error(target, line, error) from error
+        return serial.serial_for_url(target, write_timeout=WRITE_TIMEOUT_S, exclusive=True, **settings)
+    except PORT_ERRORS as error:
+        if host_of(target):
+            raise network_error(target, line, error) from error
+        raise open_error(target, line, error) from error
     except Exception as error:  # a URL handler or termios with an error of its own
         if type(error).__name__ != "error" and "://" not in target:
             raise
-        raise _open_error(target, line, error) from error
+        raise open_error(target, line, error) from error
 
 
-def _open_error(target: str, line: LineSettings, error: Exception) -> LineError:
-    cause: BaseException = error
-    if type(error.__context__).__name__ == "error":  # of termios: pyserial keeps its number as text only
-        cause = error.__context__ or error
-    number, text = getattr(error, "errno", None), str(error)
-    if number is None and len(cause.args) == 2 and isinstance(cause.args[0], int):
-        number, text = cause.args
-    if number in {errno.EBUSY, errno.EAGAIN, errno.EWOULDBLOCK} or "exclusively lock" in text:
-        return PortBusy(
-            f"{target}: another program has the port open",
-            hint="close it (a terminal, the vendor's program), or wait and run again",
-        )
-    if number == errno.ENOENT or "FileNotFoundError" in text:
-        return LineError(
-            f"{target}: no such port",
-            hint="'fatektool ports' lists the serial ports here; is the adapter plugged in?",
-        )
-    if number in {errno.EACCES, errno.EPERM} or "PermissionError" in text:
-        return LineError(
-            f"{target}: no right to use the port",
-            hint="on Linux join the group that owns it (often dialout) and log in again",
-        )
-    if number in {errno.EINVAL, errno.ENOTTY} or isinstance(error, ValueError):
-        return LineError(
-            f"{target}: cannot be used as a serial port at {line}: {text}",
-            hint="check the name, --baud and --format against what the adapter can do",
-        )
-    hint = "check the URL, and that the gateway is on" if "://" in target else "try 'fatektool ports'"
-    return LineError(f"{target}: cannot open: {text}", hint=hint)
-
-
-def _is_pty(target: str) -> bool:
-    if os.name != "posix" or "://" in target:
+def _is_pty(device: str) -> bool:
+    if os.name != "posix":
         return False
     with contextlib.suppress(OSError):
-        real = os.path.realpath(target)
+        real = os.path.realpath(device)
         return real.startswith(("/dev/pts/", "/dev/ttyp", "/dev/ttys0", "/dev/ttys1"))
     return False
 
 
 class SerialTransport(Transport):
-    """A port that only pyserial can wait for: on Windows, or behind a URL."""
+    """A port that only pyserial can wait for: on Windows, or behind a URL.
 
-    def __init__(self, name: str, line: LineSettings, port: Any) -> None:
+    A connection to a gateway that broke is made anew at the next ``write``, as over TCP.
+
+    Args:
+        name: the target, for messages.
+        line: speed and format.
+        port: pyserial's, open.
+        pty: True for a pseudo terminal behind a URL.
+        again: opens another, of a gateway.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        line: LineSettings,
+        port: Any,
+        *,
+        pty: bool = False,
+        again: Callable[[str, LineSettings], Any] | None = None,
+    ) -> None:
         self.name = name
         self.line = str(line)
+        self._settings = line
         self._port = port
+        self._pty = pty
+        self._again = again
+        self._closed = False
+        self._first = bytearray()
 
     def _gone(self, error: Exception) -> TransportClosed:
         self.close()
+        if self._again is not None:
+            return gateway_closed(self.name, said_text(bytes(self._first)))
         return TransportClosed(
             f"{self.name}: the port is gone: {error}",
             hint="was the adapter pulled out? plug it in and run again",
@@ -206,16 +161,24 @@ class SerialTransport(Transport):
 
     def _read_slice(self, max_bytes: int) -> bytes:
         try:
-            return bytes(self._port.read(min(max_bytes, max(1, self._port.in_waiting))))
+            data = bytes(self._port.read(min(max_bytes, max(1, self._port.in_waiting))))
         except (OSError, ValueError, TypeError, AttributeError) as error:  # pyserial's, once it is closed
             raise self._gone(error) from error
+        if len(self._first) <= MOST_SAID:
+            self._first += data
+        return data
 
     def write(self, data: bytes) -> None:
-        """Write all of ``data``."""
+        """Write all of ``data``; connect first if the connection to a gateway was lost."""
+        if self._closed and self._again is not None:
+            self._port = self._again(self.name, self._settings)
+            self._closed = False
+            self._first.clear()
         try:
             self._port.write(data)
         except (OSError, ValueError, TypeError, AttributeError) as error:
             if type(error).__name__ == "SerialTimeoutException":
+                self.renew()
                 raise TransportTimeout(f"{self.name}: takes no bytes for {WRITE_TIMEOUT_S} s") from error
             raise self._gone(error) from error
 
@@ -229,15 +192,25 @@ class SerialTransport(Transport):
 
     def set_line(self, line: LineSettings) -> None:
         """Take another speed and format."""
-        _set_line(self.name, line, self._port)
+        if not (self._closed and self._again):  # else it is set with the next connection
+            set_line(self.name, of_pty(line) if self._pty else line, self._port)
+        self._settings = line
         self.line = str(line)
+
+    def renew(self) -> None:
+        """Drop the connection to a gateway; the next ``write`` makes another."""
+        if self._again is not None:
+            self.close()
 
     def set_dtr(self, *, on: bool) -> bool:
         """Switch DTR; False if the port says that it has none."""
-        return _set_dtr(self._port, on=on)
+        return set_dtr(self._port, on=on)
 
     def close(self) -> None:
         """Close the port."""
+        if self._closed:
+            return
+        self._closed = True
         connection = getattr(self._port, "_socket", None)  # of a URL; pyserial leaves a broken one open
         with contextlib.suppress(OSError, ValueError):
             self._port.close()
@@ -306,14 +279,14 @@ class DeviceTransport(Transport):
 
     def set_line(self, line: LineSettings) -> None:
         """Take another speed and format; of a pty, the speed alone."""
-        _set_line(self.name, _of_pty(line) if self._pty else line, self._port)
+        set_line(self.name, of_pty(line) if self._pty else line, self._port)
         if not self._pty:  # pyserial has just turned it off
             check_parity(self._descriptor, line)
         self.line = str(line)
 
     def set_dtr(self, *, on: bool) -> bool:
         """Switch DTR; False if the port says that it has none."""
-        return _set_dtr(self._port, on=on)
+        return set_dtr(self._port, on=on)
 
     def close(self) -> None:
         """Close the port."""

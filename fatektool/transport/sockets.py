@@ -96,6 +96,7 @@ class SocketTransport(Transport):
         return TransportClosed(
             f"{self.name}: the connection broke: {error.strerror or error}",
             hint="is the PLC's Ethernet module on, and the cable in?",
+            may_return=isinstance(error, ConnectionError),
         )
 
     def read(self, max_bytes: int, timeout_s: float) -> bytes:

@@ -7,7 +7,7 @@
     tcp, udp     net      this project, port 500 unless named (FACON's; other protocols may have none)
     sim          sim      the simulator, within the process
     modem        modem    a serial port, called through: modem:/dev/ttyUSB0?number=0228082192
-    others       serial   pyserial, by its URL handler: rfc2217, socket, spy, …
+    others       serial   pyserial, by its URL handler: rfc2217, socket, hwgrep, spy, alt, loop
 """
 
 from __future__ import annotations

@@ -54,7 +54,7 @@ def test_a_backup_in_one_pass_may_be_wrong_and_one_in_two_is_not() -> None:
 def test_the_driver_is_asked_to_check_parity(before: str) -> None:
     import termios
 
-    from fatektool.transport.serial_port import check_parity
+    from fatektool.transport.serial_settings import check_parity
 
     master, slave = os.openpty()
     try:

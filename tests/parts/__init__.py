@@ -1,0 +1,1 @@
+"""Real programs of others beside the tool: gateways, Modbus clients, monitoring."""
