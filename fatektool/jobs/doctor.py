@@ -135,13 +135,18 @@ def _answers_elsewhere(found: Station) -> Finding:
     )
 
 
+# What the bits mean beyond their names no paper says: [E:battery], [E:watchdog].
 _FLAGS: Final = (
-    ("battery_low", "the battery is low", "change it with the PLC on, or program and data are lost"),
+    (
+        "battery_low",
+        "the battery is low",
+        "take a backup and a snapshot now, then change it as the manual of this PLC says",
+    ),
     ("ladder_checksum_error", "the program is damaged", "'fatektool restore' a good backup; take one first"),
     (
         "watchdog_timeout",
-        "the watchdog has stopped the PLC",
-        "a program's scan took too long: look for loops",
+        "the watchdog's time ran out",
+        "a scan of the program may have taken too long: look for loops; the mode says whether the PLC runs",
     ),
     ("emergency_stop", "the emergency stop is active", "make the machine safe, then release it"),
 )

@@ -20,10 +20,10 @@ Where a protocol has no mixed requests, as Modbus, a plan has runs only; where i
 elements (``Codec.neighbourhood``), each side is planned for itself. What one request holds is the codec's
 too.
 
-An element of 32 bits or a packed word lies within one run or item, so that its parts are of one scan, in
-reads and in writes; a write writes each atom once. Of all plans that keep to this, the result is one that
-costs least: ``edges.py`` says why no other needs to be looked at, ``paths.py`` why the least of them is
-found, and the tests compare it with every plan there is.
+An element of 32 bits or a packed word lies within one run or item, so that its parts are of one scan
+[E:one-scan], in reads and in writes; a write writes each atom once. Of all plans that keep to this, the
+result is one that costs least: ``edges.py`` says why no other needs to be looked at, ``paths.py`` why the
+least of them is found, and the tests compare it with every plan there is.
 """
 
 from fatektool.planner.atoms import Values

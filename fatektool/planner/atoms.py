@@ -191,7 +191,7 @@ class Values:
     """Answers to planned reads, and the values of the elements in them.
 
     Two answers may tell of one atom. An element's value is that of the last answer that has it whole, so that
-    its parts are of one scan.
+    its parts are of one scan [E:one-scan].
     """
 
     def __init__(self) -> None:

@@ -236,7 +236,7 @@ class Loopback(Request[bytes]):
 
 @dataclass(frozen=True, slots=True)
 class ReadPage(Request[bytes]):
-    """4F: one page of the program, 64 words as 128 bytes, high byte first. Page 0 is the header."""
+    """4F: one page of the program, 64 words, high byte first [E:page-order], as 128 bytes. Page 0: header."""
 
     page: int
     command: ClassVar[Command] = Command.READ_PAGE

@@ -10,7 +10,8 @@ FBs link paper, sections 13.1.2 (CLINK, FUN151) and 13.2.2 (M-BUS, FUN150)::
 
 That is MD0 and M-BUS. MD1 and MD2 have the result code in WR+0, and b0, b12, b13 and b14 of WR+4; WR+8 is
 how many bytes they received, WR+9 on are the bytes. MD3 has the result code alone, in WR+0. The paper does
-not say in which byte: here it is the high one as in all other modes, or the low one where the high one is 0.
+not say in which byte: here it is the high one as in all other modes, or the low one where the high one is 0
+[E:md3-code-byte].
 The results of a port in D4045 to D4052 are WR+0 and WR+1 again. What the codes mean: ``link_codes``.
 """
 

@@ -5,8 +5,8 @@ way to Modbus ASCII, "FBs PLC OS V4.24 or later". All of chapter 13 is of the FB
 later.
 
 53 has one digit a nibble for its OS version (FACON paper, 53), so a PLC says 4.2 and may have 4.20 to 4.29:
-nothing is known of the hundredths. That the nibble is their first digit is our reading: the paper's examples
-are 3.0 and 3.1.
+nothing is known of the hundredths. That the nibble is their first digit is our reading [E:os-digit]: the
+paper's examples are 3.0 and 3.1.
 """
 
 from __future__ import annotations

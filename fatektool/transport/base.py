@@ -41,7 +41,7 @@ _FORMATS: Final = {
 
 @dataclass(frozen=True, slots=True)
 class LineSettings:
-    """A serial line's speed and format; the factory setting of all these PLCs is 9600 7E1.
+    """A serial line's speed and format; the factory setting is 9600 7E1 [E:factory].
 
     Raises:
         UsageError: a speed or format that no line has.

@@ -7,7 +7,7 @@
     dial     tone or pulse                                                      tone
     wait     seconds for CONNECT, a try                                         60
     tries    calls                                                              3
-    pause    seconds between two of them                                        10
+    pause    seconds between two of them                                        11
     guard    seconds of silence around the escape sequence +++                  1
 
 Wait and tries are those of a PLC that calls (FBs link paper, chapter 13, modem, note 2), the pause is what
@@ -56,7 +56,7 @@ class Call:
     pulse: bool = False
     wait_s: float = 60.0
     tries: int = 3
-    pause_s: float = 10.0
+    pause_s: float = 11.0
     guard_s: float = 1.0
 
     @classmethod

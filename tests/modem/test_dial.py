@@ -47,7 +47,7 @@ def test_a_modem_target(text: str, path: str, call: Call) -> None:
 
 def test_the_usual_call_is_that_of_the_paper() -> None:
     call = Call.parse("number=0228082192")
-    assert (call.wait_s, call.tries, call.pause_s) == (60, 3, 10)
+    assert (call.wait_s, call.tries, call.pause_s) == (60, 3, 11)
     assert call.command == "ATDT0228082192"
     assert Call.parse("number=1&dial=pulse").command == "ATDP1"
 
