@@ -120,6 +120,7 @@ def check_document(found: Checked, folder: Path) -> dict[str, Any]:
         "commits": found.commits,
         "programs": found.programs,
         "names": list(found.names),
+        "shallow": found.shallow,
         "faults": [
             {"revision": fault.revision, "name": fault.name, "message": fault.message}
             for fault in found.faults
@@ -132,6 +133,8 @@ def check_lines(found: Checked) -> Iterator[str]:
     commits, programs = count(found.commits, "commit"), count(found.programs, "program")
     looked = f"{commits}, {programs}, {count(len(found.names), 'PLC')} now"
     yield f"damaged: {count(len(found.faults), 'fault')} in {looked}" if found.faults else f"whole: {looked}"
+    if found.shallow:
+        yield "a shallow clone: what came before is not in it; 'git fetch --unshallow' brings it"
     for fault in found.faults:
         yield f"  {_place(fault)}{fault.message}"
 

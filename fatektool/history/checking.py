@@ -43,12 +43,14 @@ class Checked:
         programs: how many stored programs, each version once.
         names: the PLCs that it holds now.
         faults: what does not hold; empty if all does.
+        shallow: True if it is a shallow clone, in which older commits are left out.
     """
 
     commits: int
     programs: int
     names: tuple[str, ...]
     faults: tuple[Fault, ...]
+    shallow: bool = False
 
 
 def check(folder: Path, progress: Callable[[str, int, int], None] = lambda *_: None) -> Checked:
@@ -87,7 +89,7 @@ class _Check:
             except DataError as error:
                 self.faults.append(Fault(commit.revision, None, error.message))
             progress("checking", number, len(commits))
-        return Checked(len(commits), self.programs, names, tuple(self.faults))
+        return Checked(len(commits), self.programs, names, tuple(self.faults), bool(self.repository.cut))
 
     def commits(self) -> list[Commit]:
         """All commits that can be reached, newest first."""

@@ -18,8 +18,9 @@ from fatektool.program.files import sync_folder, write_synced
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from fatektool.history.sharing import Rights
+
 TEMPORARY: Final = "tmp_obj_fatektool-"
-_FOLDER_MODE: Final = 0o750
 
 
 def hash_of(kind: str, data: bytes) -> str:
@@ -45,13 +46,14 @@ def read_loose(folder: Path, sha: str) -> tuple[str, bytes] | None:
     return (kind, data) if length == str(len(data)) else None
 
 
-def write_loose(folder: Path, kind: str, data: bytes) -> str:
+def write_loose(folder: Path, kind: str, data: bytes, rights: Rights) -> str:
     """Put an object on disk; one that is there anew, as it may be damaged or about to go.
 
     Args:
         folder: the repository.
         kind: ``commit``, ``tree`` or ``blob``.
         data: its bytes.
+        rights: what its file and folder are for others.
 
     Returns:
         its hash, 40 hex digits.
@@ -62,11 +64,12 @@ def write_loose(folder: Path, kind: str, data: bytes) -> str:
     sha = hash_of(kind, data)
     place = folder / "objects" / sha[:2]
     if not place.is_dir():
-        place.mkdir(_FOLDER_MODE, exist_ok=True)
+        rights.make_folder(place)
         sync_folder(place.parent)
     temporary = place / f"{TEMPORARY}{secrets.token_hex(6)}"
     try:
         write_synced(temporary, zlib.compress(_whole(kind, data)))
+        rights.give(temporary)
         temporary.replace(place / sha[2:])
         sync_folder(place)
     finally:

@@ -55,11 +55,14 @@ def pack_loose(repository: Repository) -> int:
             return 0
         store = repository.git.object_store
         store.fsync_object_files = True
+        packs = objects / "pack"
+        before = set(packs.glob("pack-*"))
         # Each is read again when its turn comes: a thousand at once would be some 40 MB.
         store.add_pack_data(len(places), (_unpacked(repository, place) for place in places))
-        for path in (objects / "pack").glob("pack-*"):
+        for path in set(packs.glob("pack-*")) - before:  # others may be another user's
             path.chmod(path.stat().st_mode & 0o440)
-        sync_folder(objects / "pack")
+            repository.rights.give(path)
+        sync_folder(packs)
         for place in places:
             place.unlink(missing_ok=True)
     return len(places)

@@ -22,7 +22,7 @@ from fatektool.history import messages
 from fatektool.history.loose import hash_of, write_loose
 from fatektool.history.repository import Newest
 from fatektool.history.trees import entries, file_in, files, with_file
-from fatektool.history.writing import move_branch
+from fatektool.history.writing import Branch, move_branch
 from fatektool.program.archive import Backup
 from fatektool.program.compare import Comparison, compare
 
@@ -119,13 +119,14 @@ def write(
             return unchanged(name, found)
         subject = messages.subject(name, found.changes, damaged=bool(found.warnings))
         blob, tree = _new_file(repository, found.newest.tree, name, backup)
-        folder = repository.folder
-        write_loose(folder, "blob", blob)
-        commit = _commit(write_loose(folder, "tree", tree), found.newest.tip, name, backup, now)
+        put = partial(write_loose, repository.folder, rights=repository.rights)
+        put("blob", blob)
+        commit = _commit(put("tree", tree), found.newest.tip, name, backup, now)
         commit.message = messages.message(subject, found.changes, found.old, backup)
-        new = write_loose(folder, "commit", commit.as_raw_string())
+        new = put("commit", commit.as_raw_string())
         still = partial(_is_tip, repository, found.newest.tip)
-        if move_branch(repository.folder, repository.branch(), new, still, wait_s=wait_s):
+        branch = Branch(repository.folder, repository.branch(), repository.rights)
+        if move_branch(branch, new, still, wait_s=wait_s):
             repository.is_now(Newest(new, tree))
             return Recorded(name, new, subject, found.changes, found.warnings)
 

@@ -13,7 +13,8 @@ from __future__ import annotations
 
 import re
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from traceback import clear_frames
 from typing import TYPE_CHECKING, Final
 
@@ -24,6 +25,7 @@ from dulwich.repo import Repo
 from fatektool.errors import DataError, FatektoolError, UsageError
 from fatektool.history.commits import Commit, parse_commit
 from fatektool.history.loose import hash_of, read_loose
+from fatektool.history.sharing import Rights, rights_of
 from fatektool.history.trees import entries, files
 from fatektool.program.files import file_error
 
@@ -83,7 +85,7 @@ class Repository:
                 )
             self.git = Repo(str(folder), bare=True)
         try:
-            self._require_format()
+            self.rights = self._require_format()
         except BaseException:
             self.git.close()
             raise
@@ -98,8 +100,9 @@ class Repository:
         """Let its files go."""
         self.git.close()
 
-    def _require_format(self) -> None:
+    def _require_format(self) -> Rights:
         with self.door("config"):
+            rights = rights_of(self.folder)
             try:
                 form = self.git.get_config().get((b"core",), b"repositoryformatversion")
             except KeyError:
@@ -110,6 +113,7 @@ class Repository:
                 hint="name another folder",
                 file=str(self.folder),
             )
+        return rights
 
     @contextmanager
     def door(self, what: str) -> Iterator[None]:
@@ -205,15 +209,26 @@ class Repository:
             raise self.damaged(f"{kind} {sha} is damaged: its bytes have another hash")
         return kind, data
 
+    @cached_property
+    def cut(self) -> frozenset[str]:
+        """The commits at which a shallow clone ends: those before them are not in it. Empty if it is none.
+
+        Raises:
+            DataError: git's list of them does not hold.
+        """
+        with self.door("shallow"):
+            return frozenset(sha.decode() for sha in self.git.get_shallow())
+
     def commit(self, sha: str) -> Commit:
-        """A commit.
+        """A commit; one at which a shallow clone ends has no parents.
 
         Raises:
             DataError: it does not hold.
         """
         data = self.read(sha, "commit")
         with self.door(f"commit {sha}"):
-            return parse_commit(sha, data)
+            found = parse_commit(sha, data)
+        return replace(found, parents=()) if sha in self.cut else found
 
     def tree(self, sha: str) -> bytes:
         """A tree's bytes: see ``trees``.

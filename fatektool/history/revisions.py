@@ -83,10 +83,10 @@ def resolve(repository: Repository, name: str, revision: str) -> Commit:
             f"or a date such as 2026-11-22"
         )
     if found is None:
-        raise UsageError(
-            f"there is no revision {name}@{revision} in {repository.folder}",
-            hint=f"see 'fatektool history log {name}'",
-        )
+        hint = f"see 'fatektool history log {name}'"
+        if repository.cut:
+            hint += f"; it is a shallow clone: git -C {repository.folder} fetch --unshallow brings the rest"
+        raise UsageError(f"there is no revision {name}@{revision} in {repository.folder}", hint=hint)
     return found
 
 

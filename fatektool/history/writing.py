@@ -20,11 +20,14 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
+import shutil
 import time
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import PortBusy, UsageError
 from fatektool.history.repository import is_repository
+from fatektool.history.sharing import FILE_MODE, FOLDER_MODE, Rights, rights_of
 from fatektool.program.files import file_error, sync_folder, write_synced
 from fatektool.transport.base import no_note
 from fatektool.transport.lock import PortLock
@@ -39,8 +42,6 @@ _HEAD: Final = b"ref: refs/heads/main\n"
 _CONFIG: Final = b"[core]\n\trepositoryformatversion = 0\n\tfilemode = true\n\tbare = true\n"
 _FOLDERS: Final = ("objects", "objects/info", "objects/pack", "refs", "refs/heads", "refs/tags")
 _MADE: Final = {"objects", "refs", "config", LOCK, "HEAD.tmp", "config.tmp"}
-_FOLDER_MODE: Final = 0o750
-_LOCK_MODE: Final = 0o640
 _STALE_S: Final = 3600.0  # git holds the lock of a branch for milliseconds
 _POLL_S: Final = 0.05
 _NO_LINKS: Final = {
@@ -68,14 +69,15 @@ def writing(folder: Path, wait_s: float, waiting: Callable[[str], None] = no_not
     """
     try:
         if not folder.is_dir():
-            folder.mkdir(_FOLDER_MODE)
+            folder.mkdir(FOLDER_MODE)
             sync_folder(folder.parent)
         if not is_repository(folder):
             _require_ours(folder)
         lock = PortLock(os.path.realpath(folder), wait_s, waiting=waiting)
         lock.path = folder / LOCK  # beside what it guards: the same for all users and computers
         if not lock.path.exists():
-            lock.path.touch(_LOCK_MODE)
+            lock.path.touch(FILE_MODE)
+            rights_of(folder).give(lock.path)
         lock.acquire()
         try:
             if not is_repository(folder):
@@ -83,6 +85,14 @@ def writing(folder: Path, wait_s: float, waiting: Callable[[str], None] = no_not
             yield
         finally:
             lock.release()
+    except PermissionError as error:
+        raise UsageError(
+            f"cannot write {folder}: {error.strerror}: {error.filename}",
+            hint="check its rights; where several users write one history: "
+            f"git -C {folder} config core.sharedRepository group, "
+            "then let the group write what is there already: chgrp -R, chmod -R g+rwX",
+            file=str(folder),
+        ) from error
     except OSError as error:
         raise file_error("write", folder, error) from error
 
@@ -99,7 +109,7 @@ def _require_ours(folder: Path) -> None:
 
 def _make(folder: Path) -> None:
     for name in _FOLDERS:
-        (folder / name).mkdir(_FOLDER_MODE, exist_ok=True)
+        (folder / name).mkdir(FOLDER_MODE, exist_ok=True)
     for name, data in (("config", _CONFIG), ("HEAD", _HEAD)):
         temporary = folder / f"{name}.tmp"
         temporary.unlink(missing_ok=True)
@@ -108,9 +118,22 @@ def _make(folder: Path) -> None:
         sync_folder(folder)
 
 
+@dataclass(frozen=True, slots=True)
+class Branch:
+    """A branch of a history: its folder, its name in full, ``refs/heads/main``, the rights of its files."""
+
+    folder: Path
+    name: str
+    rights: Rights
+
+    @property
+    def path(self) -> Path:
+        """The file that names its newest commit."""
+        return self.folder / self.name
+
+
 def move_branch(
-    folder: Path,
-    branch: str,
+    branch: Branch,
     new: str,
     still: Callable[[], bool],
     *,
@@ -121,8 +144,7 @@ def move_branch(
     """Let a branch name another commit, if it is still what that was made from.
 
     Args:
-        folder: the repository.
-        branch: ``refs/heads/main``.
+        branch: it.
         new: the commit.
         still: looks whether the branch is as it was; called while nobody else can move it.
         wait_s: how long to wait for another git program.
@@ -136,11 +158,13 @@ def move_branch(
         PortBusy: another git program holds the branch.
         OSError: the disk is full or broken.
     """
-    path, lock, stage = folder / branch, folder / f"{branch}.lock", folder / STAGE
-    path.parent.mkdir(_FOLDER_MODE, parents=True, exist_ok=True)
-    drop_stale(folder, branch)
+    folder, path = branch.folder, branch.path
+    lock, stage = path.with_name(f"{path.name}.lock"), folder / STAGE
+    branch.rights.make_folder(path.parent)
+    drop_stale(folder, branch.name)
     try:
         write_synced(stage, new.encode() + b"\n")
+        branch.rights.give(stage)
         deadline = clock() + wait_s
         while not _taken(stage, lock):
             if not clock() < deadline:
@@ -157,7 +181,7 @@ def move_branch(
         return True
     finally:
         with contextlib.suppress(OSError):
-            drop_stale(folder, branch)
+            drop_stale(folder, branch.name)
 
 
 def drop_stale(folder: Path, branch: str) -> None:
@@ -191,6 +215,7 @@ def _taken_by_copy(stage: Path, lock: Path) -> bool:
     """The same where there are no hard links."""
     try:
         write_synced(lock, stage.read_bytes())
+        shutil.copymode(stage, lock)
     except FileExistsError:
         return False
     except OSError:

@@ -17,7 +17,7 @@ from fatektool.history.history import History
 from fatektool.history.names import file_of, name_of
 from fatektool.history.packing import MANY, is_due, pack_loose
 from fatektool.history.repository import Repository
-from fatektool.history.writing import move_branch, writing
+from fatektool.history.writing import Branch, move_branch, writing
 from fatektool.program.archive import Backup, Source, load_backup
 from tests.program.samples import backup, changed, program
 
@@ -246,9 +246,8 @@ def test_a_push_into_it_in_between(book: Book) -> None:
     assert first
     assert second
     with writing(book.folder, 0.0), Repository(book.folder) as repository:
-        assert not move_branch(
-            book.folder, repository.branch(), first, lambda: repository.tip() == first, wait_s=0.0
-        )
+        branch = Branch(book.folder, repository.branch(), repository.rights)
+        assert not move_branch(branch, first, lambda: repository.tip() == first, wait_s=0.0)
         assert repository.tip() == second
     assert not list(book.folder.rglob("*.lock"))[1:]
     assert book.commits == 2
