@@ -1,0 +1,168 @@
+"""Two programs' code: the networks that differ, and in them the instructions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from fatektool.ladder.alignment import align
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from fatektool.ladder.instruction import Instruction
+    from fatektool.ladder.networks import Code, Network
+
+_MOST_PAIRS: Final = 4_000
+
+
+class Change(StrEnum):
+    """What became of a network."""
+
+    ADDED = "added"
+    REMOVED = "removed"
+    CHANGED = "changed"
+
+
+@dataclass(frozen=True, slots=True)
+class NetworkChange:
+    """A network that differs.
+
+    Attributes:
+        a: the network of the first program; None if it was added.
+        b: that of the second; None if it was removed.
+        lines: the instructions, each behind ``-``, ``+`` or a space, as in a unified diff.
+    """
+
+    a: Network | None
+    b: Network | None
+    lines: tuple[str, ...]
+
+    @property
+    def change(self) -> Change:
+        """What became of it."""
+        if self.a is None:
+            return Change.ADDED
+        return Change.REMOVED if self.b is None else Change.CHANGED
+
+    @property
+    def name(self) -> str:
+        """The number that it has now, or had: ``N0009``."""
+        network = self.b or self.a
+        assert network is not None  # noqa: S101  # one of the two is there
+        return network.name
+
+
+def compare_code(a: Code, b: Code) -> tuple[NetworkChange, ...]:
+    """The networks that differ, in the order of the programs; empty for the same code."""
+    found: list[NetworkChange] = []
+    keys = [[(network.unit, network.words) for network in code.networks] for code in (a, b)]
+    for block in align(*keys):
+        if not block.equal:
+            old, new = a.networks[block.a_first : block.a_end], b.networks[block.b_first : block.b_end]
+            found += (_change(*pair) for pair in _pairs(old, new))
+    return tuple(found)
+
+
+def summary(changes: Sequence[NetworkChange], most: int = 6) -> str:
+    """The networks in a few words: ``N0009 changed, N0031 added``."""
+    parts = [f"{change.name} {change.change}" for change in changes[:most]]
+    more = len(changes) - most
+    return ", ".join([*parts, f"{more} networks more"] if more > 0 else parts)
+
+
+def instruction_line(found: Instruction) -> str:
+    """An instruction as a line of a comparison; drawing that has no text is shown by its words."""
+    return found.text or f"(drawing {' '.join(f'{word:04X}' for word in found.words)})"
+
+
+def _pairs(old: Sequence[Network], new: Sequence[Network]) -> Iterator[tuple[Network | None, Network | None]]:
+    """Which of these became which, in order: those that have most in common."""
+    if len(old) * len(new) > _MOST_PAIRS:
+        yield from _in_order(old, new)
+        return
+    # The best row of pairs ends without the last old one, without the last new one, or with both as a pair.
+    best = [[0.0] * (len(new) + 1) for _ in range(len(old) + 1)]
+    looks = [_Looks.of(network) for network in new]
+    alike = [[here.likeness(there) for there in looks] for here in map(_Looks.of, old)]
+    for i in range(1, len(old) + 1):
+        for j in range(1, len(new) + 1):
+            paired = best[i - 1][j - 1] + alike[i - 1][j - 1] if alike[i - 1][j - 1] else 0.0
+            best[i][j] = max(best[i - 1][j], best[i][j - 1], paired)
+    row: list[tuple[Network | None, Network | None]] = []
+    i, j = len(old), len(new)
+    while i or j:
+        if i and j and alike[i - 1][j - 1] and best[i][j] == best[i - 1][j - 1] + alike[i - 1][j - 1]:
+            i, j = i - 1, j - 1
+            row.append((old[i], new[j]))
+        elif j and (not i or best[i][j] == best[i][j - 1]):
+            j -= 1
+            row.append((None, new[j]))
+        else:
+            i -= 1
+            row.append((old[i], None))
+    yield from reversed(row)
+
+
+def _in_order(
+    old: Sequence[Network], new: Sequence[Network]
+) -> Iterator[tuple[Network | None, Network | None]]:
+    for number in range(max(len(old), len(new))):
+        yield old[number] if number < len(old) else None, new[number] if number < len(new) else None
+
+
+class _Looks(NamedTuple):
+    """What a network is known again by."""
+
+    unit: int
+    instructions: frozenset[tuple[int, ...]]
+    elements: frozenset[str]
+
+    @classmethod
+    def of(cls, network: Network) -> _Looks:
+        found = network.instructions
+        return cls(
+            network.unit,
+            frozenset(each.words for each in found),
+            frozenset(element for each in found for element in each.elements),
+        )
+
+    def likeness(self, other: _Looks) -> float:
+        """How much the two have in common, 0 to 1; 0 for those that are no version of each other."""
+        if self.unit != other.unit:
+            return 0.0
+        share = len(self.instructions & other.instructions)
+        about = len(self.elements & other.elements)
+        if not share and not about:
+            return 0.0
+        most = max(len(self.instructions), len(other.instructions))
+        return share / most / 2 + about / max(len(self.elements), len(other.elements), 1) / 2
+
+
+def _change(a: Network | None, b: Network | None) -> NetworkChange:
+    if a is None or b is None:
+        sign = "-" if b is None else "+"
+        network = a or b
+        assert network is not None  # noqa: S101  # pairs have one at least
+        return NetworkChange(a, b, tuple(_lines(sign, network.instructions)))
+    return NetworkChange(a, b, tuple(_changed_lines(a.instructions, b.instructions)))
+
+
+def _changed_lines(a: Sequence[Instruction], b: Sequence[Instruction]) -> Iterator[str]:
+    for block in align([found.words for found in a], [found.words for found in b]):
+        old, new = a[block.a_first : block.a_end], b[block.b_first : block.b_end]
+        if block.equal:
+            yield from _lines(" ", new)
+        elif [found.text for found in old] == [found.text for found in new]:  # drawn in another way
+            yield from _lines("-", old, words=True)
+            yield from _lines("+", new, words=True)
+        else:
+            yield from _lines("-", old)
+            yield from _lines("+", new)
+
+
+def _lines(sign: str, instructions: Iterable[Instruction], *, words: bool = False) -> Iterator[str]:
+    for found in instructions:
+        shown = f" ({' '.join(f'{word:04X}' for word in found.words)})" if words and found.text else ""
+        yield f"{sign}{instruction_line(found)}{shown}"
