@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from fatektool.program.compare import compare
     from fatektool.program.headers.header import Header
     from fatektool.program.image import Program
+    from fatektool.project.program_file import ProgramFile, load_program
     from fatektool.protocol.elements import Element
     from fatektool.protocol.frames import checksum, error_text, frame
 
@@ -49,6 +50,7 @@ _HOMES = {
     "Header": "fatektool.program.headers.header",
     "Plc": "fatektool.client",
     "Program": "fatektool.program.image",
+    "ProgramFile": "fatektool.project.program_file",
     "backup": "fatektool.jobs.backup",
     "checksum": "fatektool.protocol.frames",
     "compare": "fatektool.program.compare",
@@ -56,6 +58,7 @@ _HOMES = {
     "error_text": "fatektool.protocol.frames",
     "frame": "fatektool.protocol.frames",
     "load_backup": "fatektool.program.archive",
+    "load_program": "fatektool.project.program_file",
     "parse_command": "fatektool.jobs.command_words",
     "read_status": "fatektool.jobs.status",
     "restore": "fatektool.jobs.restore",
@@ -70,6 +73,7 @@ __all__ = [
     "Header",
     "Plc",
     "Program",
+    "ProgramFile",
     "__version__",
     "backup",
     "checksum",
@@ -78,6 +82,7 @@ __all__ = [
     "error_text",
     "frame",
     "load_backup",
+    "load_program",
     "parse_command",
     "read_status",
     "restore",

@@ -23,6 +23,8 @@ JOBS: Final[dict[str, dict[str, Entry]]] = {
         "verify": Entry("verify", "Compare the PLC's program with a backup."),
         "restore": Entry("restore", "Put a backup's program into the PLC, with a way back."),
         "inspect": Entry("inspect", "Show and check what a backup holds; no PLC."),
+        "listing": Entry("listing", "List a program in the vendor's mnemonics; no PLC."),
+        "xref": Entry("xref", "Show who reads and who writes each element; no PLC."),
         "diff": Entry("diff", "Compare two backups; no PLC."),
     },
     "The PLC": {

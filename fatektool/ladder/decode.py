@@ -130,7 +130,5 @@ def _begins(words: Sequence[int], place: int) -> bool:
     if first.form.shape is not Shape.CONTACT or first.bit in DRAWING:
         return True
     behind = place + len(first.words)
-    if behind == len(words):
-        return True
-    second = _instruction(words, behind)
+    second = _instruction(words, behind) if behind < len(words) else None
     return second is not None and not second.form.begins and second.bit not in OUTPUTS

@@ -15,14 +15,25 @@ from typing import TYPE_CHECKING, Final
 
 from fatektool.ladder.decode import end_of
 from fatektool.ladder.networks import Code
+from fatektool.program.headers.header import FBS, SWAPPED
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from fatektool.program.image import Program
 
 CODE_WORD: Final = 256
 _USED: Final = 131
 _MAIN_END: Final = 134
 _FBE: Final = slice(0x2800, 0x6700)
+
+
+def code_of(program: Program) -> Code | None:
+    """The code of a program; None where it is not known how it is made, or the header does not hold."""
+    header = program.header
+    if header.family != FBS or not header.valid:
+        return None
+    return fbs_code(words_of_image(program.data, swapped=header.byte_order == SWAPPED))
 
 
 def words_of_image(image: bytes, *, swapped: bool = False) -> tuple[int, ...]:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 SCHEMA: Final = "fatektool.backup/1"
-_MAX_FILE: Final = 4 << 20  # the largest image takes 270 kB
+LARGEST_FILE: Final = 4 << 20  # the largest image takes 270 kB
 _PAGE: Final = re.compile(r"[0-9A-Fa-f]{256}", re.ASCII)
 _TIME: Final = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?Z", re.ASCII)
 
@@ -138,7 +138,7 @@ def load_backup(path: Path) -> Backup:
         UsageError: there is no such file.
         DataError: it is damaged or none of ours.
     """
-    return Backup.parse(read_bounded(path, _MAX_FILE), str(path))
+    return Backup.parse(read_bounded(path, LARGEST_FILE), str(path))
 
 
 def _json(data: bytes, name: str) -> dict[str, Any]:
