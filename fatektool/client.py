@@ -9,7 +9,7 @@ import time
 from typing import TYPE_CHECKING
 
 from fatektool.batch import ask_all, ask_until_refused, tell_all
-from fatektool.errors import DataError, LineError, PlcError, PlcRefused
+from fatektool.errors import DataError, LineError, PlcBusy, PlcError, PlcRefused
 from fatektool.protocol.commands import (
     DETAILED_BYTES,
     Control,
@@ -97,7 +97,7 @@ class Plc:
             return False
         try:
             self.link.ask(self.link.codec.probe)
-        except PlcRefused:
+        except (PlcRefused, PlcBusy):
             return True
         except LineError:
             return False

@@ -123,6 +123,7 @@ def connect(
     lend: bool = False,
     note: Callable[[str], None] = no_note,
     waiting: Callable[[str], None] = no_note,
+    warn: Callable[[str], None] = no_note,
 ) -> Plc:
     """Open the line to a PLC. Nothing is sent yet, but for ``modbus_map="custom"``.
 
@@ -148,6 +149,7 @@ def connect(
         lend: True for who lets others have the line between two rounds, with ``Plc.lend``.
         note: is told what a curious user may want to know.
         waiting: is told, at once, who has the line, if it must be waited for.
+        warn: is told once that answers come later than ``timeout_s``.
 
     Raises:
         UsageError: something named is not there to be named, or the protocol lacks what is needed.
@@ -192,6 +194,7 @@ def connect(
             retries=retries,
             read_only=read_only,
             note=note,
+            warn=warn,
         )
         for lock in locks:
             _hand_over_doubt(lock, link)

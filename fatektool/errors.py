@@ -9,6 +9,7 @@
     ├── LineError                       3  no or no usable answer, port not there or in use
     │   ├── TransportError                 the medium failed
     │   │   ├── TransportTimeout           nothing came in time (one read, not one exchange)
+    │   │   │   └── GatewayTimeout         a gateway says that it did not reach the PLC
     │   │   └── TransportClosed            the other side or the cable is gone
     │   ├── PortBusy                       another process holds the port
     │   ├── FrameError                     bytes that are no frame
@@ -17,6 +18,7 @@
     │   └── PushFailed                     a history did not reach the other repository; it is kept here
     ├── PlcError                        4  the PLC is reached and will not or must not
     │   ├── PlcRefused                     an error code in its answer
+    │   ├── PlcBusy                        it says that it is at work: to be asked again
     │   └── PlcNotReady                    RUN where STOP is needed, ROM pack fitted
     ├── DataError                       5  a file or program that does not hold
     └── RestoreIncomplete               6  the PLC's program is neither old nor new
@@ -95,6 +97,19 @@ class TransportTimeout(TransportError):
     """Not one byte came within the time that a single read was given."""
 
 
+class GatewayTimeout(TransportTimeout):
+    """A gateway says that no answer came from behind it.
+
+    Args:
+        message: what it says.
+        handed_on: False if the request did not leave the gateway.
+    """
+
+    def __init__(self, message: str, *, handed_on: bool, hint: str) -> None:
+        super().__init__(message, hint=hint)
+        self.handed_on = handed_on
+
+
 class TransportClosed(TransportError):
     """The connection or the device is gone.
 
@@ -160,6 +175,23 @@ class PlcRefused(PlcError):
         super().__init__(message, hint=hint, code=f"{code:X}", command=f"{command:02X}")
         self.code = code
         self.command = command
+
+
+class PlcBusy(PlcError):
+    """The PLC says that it is at work. Not for good: it is asked again, and this is raised if it stays so.
+
+    Args:
+        message: what was asked and what the PLC said.
+        code: the exception code.
+        command: the command's code.
+        accepted: True if it will do what it was asked, and has not done it yet.
+    """
+
+    def __init__(
+        self, message: str, *, code: int, command: int, accepted: bool, hint: str | None = None
+    ) -> None:
+        super().__init__(message, hint=hint, code=f"{code:X}", command=f"{command:02X}")
+        self.accepted = accepted
 
 
 class PlcNotReady(PlcError):

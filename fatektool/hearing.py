@@ -3,12 +3,14 @@
 All of it leaves a *doubt*, which a fence takes away. What could mean that an earlier answer was taken for
 another's is also a *suspicion*: whoever sent many requests of one kind must look at their answers again.
 
-An answer that is still owed to an earlier request is no suspicion when it comes: it was to be expected.
+An answer that is still owed to an earlier request is no suspicion when it comes: it was to be expected. It is
+late, and how late tells how long this PLC takes to answer.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from collections import deque
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from fatektool.counters import Counters
 from fatektool.errors import FrameError, TransportTimeout
@@ -18,10 +20,29 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fatektool.protocol.codec import Decoder, Frame
+    from fatektool.sending import Sent
     from fatektool.transport.base import Transport
 
-_MOST_PATIENCE: Final = 4
 _READ_BYTES: Final = 4096
+_MOST_OWED: Final = 64
+
+
+class Awaited(NamedTuple):
+    """A request whose answer may still come.
+
+    Attributes:
+        sent: the request.
+        since: when it and its answer could have crossed the wire: from then on the PLC's time runs.
+        waited_for: False if nobody waited for its answer.
+    """
+
+    sent: Sent
+    since: float
+    waited_for: bool = True
+
+    def is_answered_by(self, frame: Frame) -> bool:
+        """True if the frame may be its answer."""
+        return self.sent.answered_by(frame) and self.sent.data in {None, frame.data}
 
 
 class Hearing:
@@ -36,10 +57,11 @@ class Hearing:
         counters: what was seen so far.
         suspicions: how often something came that may have been an answer gone astray.
         doubt: True until a fence proves that nothing else can come.
-        patience: by how much a PLC that answers late gets more time.
+        late_s: the longest that an answer took that came too late, beside wire time; 0 if none did.
         on_stray: is shown each good frame that answers nothing asked then.
         on_bad_bytes: is shown what was no frame.
         words: what was heard instead of an answer, for messages; empty for silence.
+        misnumbered: True if an answer bore a number that no request had.
     """
 
     def __init__(self, transport: Transport, decoder: Decoder, station: int) -> None:
@@ -47,15 +69,30 @@ class Hearing:
         self.counters = Counters()
         self.suspicions = 0
         self.doubt = False
-        self.patience = 1
+        self.late_s = 0.0
         self.on_stray: Callable[[Frame], object] = _to_nobody
         self.on_bad_bytes: Callable[[FrameError], object] = _to_nobody
         self.words = ""
+        self.misnumbered = False
         self._transport = transport
         self._station = station
         self._doubtful: set[int] = set()  # other stations, whose late answers may still come
-        self._owed = 0  # requests without an answer since the last fence: as many may still come
-        self._given_up = 0  # those of them whose answer was not even waited for
+        self._awaited: Awaited | None = None  # the last request
+        self._owed: deque[Awaited] = deque(maxlen=_MOST_OWED)  # those without an answer since the last fence
+
+    @property
+    def owed_since(self) -> float | None:
+        """Since when the oldest answer is owed; None if there is none."""
+        return self._owed[0].since if self._owed else None
+
+    def expect(self, sent: Sent, wire_s: float) -> None:
+        """A request went out.
+
+        Args:
+            sent: the request.
+            wire_s: of it and its answer.
+        """
+        self._awaited = Awaited(sent, self._transport.clock() + wire_s)
 
     def turn_to(self, station: int) -> bool:
         """Wait for another station's answers from now on; True if an earlier one of it may still come.
@@ -65,8 +102,9 @@ class Hearing:
         if self.doubt:
             self._doubtful.add(self._station)
         self._station = station
-        self._owed = self._given_up = 0
-        self.patience = 1
+        self._awaited = None
+        self._owed.clear()
+        self.late_s = 0.0
         known = station in self._doubtful
         self._doubtful.discard(station)
         self.doubt = self.doubt or known
@@ -75,17 +113,21 @@ class Hearing:
     def fenced(self) -> None:
         """A fence came down: nothing can be on its way any more."""
         self.doubt = False
-        self._owed = self._given_up = 0
+        self._owed.clear()
 
     def lost(self) -> None:
-        """A request found no answer in time."""
-        self.doubt = True
-        self._owed += 1
+        """The last request found no answer in time."""
+        self._owe(waited_for=True)
 
     def give_up(self) -> None:
-        """A request is on its way whose answer nobody will wait for."""
+        """The last request is on its way, and nobody will wait for its answer."""
+        self._owe(waited_for=False)
+
+    def _owe(self, *, waited_for: bool) -> None:
         self.doubt = True
-        self._given_up += 1
+        if self._awaited is not None:
+            self._owed.append(self._awaited._replace(waited_for=waited_for))
+            self._awaited = None
 
     def bad_bytes(self, error: FrameError) -> None:
         """Bytes that are no frame."""
@@ -98,23 +140,41 @@ class Hearing:
             self.counters.garbled += 1
             self.words = self.words or f"{len(error.raw)} bytes that are no frame"
 
-    def stray(self, frame: Frame) -> None:
-        """A good frame that answers nothing asked now."""
+    def stray(self, frame: Frame, asked: Sent | None = None) -> None:
+        """A good frame that answers nothing asked now.
+
+        Args:
+            frame: it.
+            asked: what is asked now, if anything is.
+        """
         self.counters.strays += 1
-        self.on_stray(frame)
         self.doubt = True
         if frame.station != self._station:
             self.words = f"station {frame.station} instead"
-            return
-        self.words = self.words or f"an answer to another command ({frame.command:02X})"
-        if frame.command == Command.LOOPBACK:
-            return  # an old fence, which can be told from everything else
-        if self._given_up:
-            self._given_up -= 1
-        elif self._owed:  # it came, but late: give this PLC more time from now on
-            self._owed -= 1
-            self.patience = min(2 * self.patience, _MOST_PATIENCE)
         else:
+            owed = next((owed for owed in self._owed if owed.is_answered_by(frame)), None)
+            if owed is None:
+                self._answer_to_nothing(frame, asked)
+            else:
+                self._owed.remove(owed)
+                if owed.waited_for:  # it came, but late: this PLC gets more time from now on
+                    self.late_s = max(self.late_s, self._transport.clock() - owed.since)
+        self.on_stray(frame)
+
+    def _answer_to_nothing(self, frame: Frame, asked: Sent | None) -> None:
+        if asked is not None and (frame.command, frame.number) == (asked.code, asked.number):
+            pass  # the caller has said what is wrong with it
+        elif asked is not None and frame.command == asked.code:
+            self.misnumbered = True
+            self.words = (
+                f"an answer with transaction number {frame.number:04X}, expected {asked.number:04X}, "
+                "that of the request"
+            )
+        elif frame.command == Command.LOOPBACK:
+            self.words = self.words or "another loopback's answer"
+        else:
+            self.words = self.words or f"an answer to another command ({frame.command:02X})"
+        if frame.command != Command.LOOPBACK:  # an old fence can be told from everything else
             self.suspicions += 1
 
     def drop_input(self) -> bool:
@@ -135,13 +195,17 @@ class Hearing:
             self.suspicions += 1
         return True
 
-    def listen_until(self, moment: float) -> None:
+    def listen_until(self, moment: float, *, or_late: bool = False) -> None:
         """Wait until a moment of the transport's clock, and look at whatever comes unasked.
+
+        Args:
+            moment: until when.
+            or_late: end as soon as an answer came late.
 
         Raises:
             TransportClosed: the line is gone.
         """
-        while (rest := moment - self._transport.clock()) > 0:
+        while (rest := moment - self._transport.clock()) > 0 and not (or_late and self.late_s):
             try:
                 found = self._transport.read(_READ_BYTES, rest)
             except TransportTimeout:

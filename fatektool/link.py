@@ -7,54 +7,60 @@ time-out the late answer to page 5 would pass for page 6. What keeps them apart:
 - After any doubt (a time-out, garbage, an answer that nobody asked for) a **fence** is put up before the next
   request: see ``fences``. Where answers repeat a number of their request (``Codec.numbers``), that tells them
   apart, and none is needed.
-- A two-wire line may echo every byte. The echo of most requests can be told from any answer by its content;
-  that of 4E, STOP and RUN cannot. So before the first of those it is learned, from a request of the former
-  kind, whether this line echoes; from then on the first copy is the echo and the second the answer.
 - A write whose answer was lost is read back before it is sent again.
 
 ``suspicions`` counts what could mean that an earlier answer was taken for another's: input that nobody asked
 for. Whoever sends many requests of one kind puts up a fence at the end and reads again what stands in doubt:
 that is ``batch.ask_all``.
 
-Deadline of one try = wire time of request and longest answer at this baud + the PLC's time. A PLC whose
-answers are seen to come late gets twice that time, up to four times; one that is silent does not.
+One try is ``attempt``. A PLC whose answers are seen to come late gets more time, up to four times; one that
+is silent does not. One that says that it is busy is asked again, after growing pauses. What the link asks for
+itself (a fence, a read to learn whether the line echoes, a read-back) is never told as what its caller has
+asked: if that is refused, the answer that is wanted is looked for without it.
 """
 
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
+from fatektool.attempt import Attempts
 from fatektool.errors import (
     FrameError,
+    GatewayTimeout,
     LineError,
     LineReadOnly,
+    PlcBusy,
     PlcRefused,
     TransportClosed,
     TransportError,
-    TransportTimeout,
 )
 from fatektool.fences import Fences
 from fatektool.hearing import Hearing
 from fatektool.protocol.codec import require_station
-from fatektool.protocol.commands import Command, Loopback
 from fatektool.protocol.read_back import read_back
 from fatektool.sending import Sender
-from fatektool.silence import no_answer
+from fatektool.silence import ROOM, Account, Silence, late_words, longer_timeout
 from fatektool.transport.base import no_note
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fatektool.protocol.codec import Codec, Frame
+    from fatektool.protocol.codec import Codec
     from fatektool.protocol.commands import Request
     from fatektool.sending import Sent
     from fatektool.transport.base import LineSettings, Transport
 
 A = TypeVar("A")
 
-_READ_BYTES = 4096
-_SILENT_TRIES_BEFORE_RENEWAL = 2
+MOST_PATIENCE: Final = 4
+"""So many times the time-out is an answer waited for, where answers were seen to come late."""
+
+LONGEST_LISTENING_S: Final = 2.0
+"""Before a PLC is called silent, it is listened to for so much longer than its time-out, at most."""
+
+LONGEST_PAUSE_S: Final = 5.0
+"""Between two questions to a PLC that is busy."""
 
 
 class Link:
@@ -70,6 +76,7 @@ class Link:
         nonces: gives the fences' nonces, never the same twice; for tests.
         read_only: refuse every request that writes, before a byte is sent.
         note: is told what a curious user may want to know.
+        warn: is told once that answers come late.
     """
 
     def __init__(
@@ -84,6 +91,7 @@ class Link:
         nonces: Callable[[], bytes] = lambda: os.urandom(4).hex().upper().encode(),
         read_only: bool = False,
         note: Callable[[str], None] = no_note,
+        warn: Callable[[str], None] = no_note,
     ) -> None:
         require_station(codec, station)
         self.transport = transport
@@ -97,9 +105,12 @@ class Link:
         self.byte_time_s = line.byte_time_s
         self.read_only = read_only
         self.note = note
+        self.warn = warn
         self.echoes: bool | None = None
-        self._silent_tries = 0
+        self.begin_with_echo()
+        self._late_told_s = 0.0
         self.answered: set[int] = set()  # commands
+        self._attempts = Attempts(self)
         self.fences = Fences(self, nonces)
         self.sender = Sender(self)
 
@@ -111,28 +122,64 @@ class Link:
         Raises:
             NoAnswer: no try found an answer to trust.
             PlcRefused: the answer is an error code.
+            PlcBusy: it is at work, and still was at the last try.
             LineReadOnly: it writes, and the line may only be read.
         """
         self.require_leave(request)
-        failure: LineError | None = None
-        fences = self.counters.fences
-        for _ in range(self.retries + 1):
+        failure: LineError | PlcBusy | None = None
+        account = Account(self)
+        for attempt in range(self.retries + 1):
             self.hearing.drop_input()
             if self.hearing.doubt:
                 try:
                     self.fence(request)
                 except LineError as error:  # the fence stays up: further tries would be in vain
-                    closed = failure if isinstance(failure, TransportClosed) else error
-                    raise self.silence(request, closed) from error
+                    told = failure if isinstance(failure, TransportClosed | GatewayTimeout) else error
+                    raise self.silence(request, told, account) from error
+            sent = account.tries
             try:
                 if self.echoes is None and self._needs_a_read_before(request):
                     self.learn_echo()
-                return self.try_once(request)
+                account.tries += 1
+                answer = self.try_once(request)
             except (TransportError, FrameError) as error:
                 failure = error
-            if request.writes and self.took(request):
+            except PlcBusy as error:
+                failure = error
+                self.let_work(attempt)
+            else:
+                self._tell_if_late()
+                return answer
+            if account.tries > sent and _may_be_made(request, failure) and self.took(request, account):
                 return None  # type: ignore[return-value]  # a write's answer is None
-        raise self.silence(request, failure, alive=self.counters.fences > fences)
+        if isinstance(failure, PlcBusy):
+            raise PlcBusy(
+                f"{failure.message}; still so {account}",
+                code=int(failure.details["code"], 16),
+                command=int(failure.details["command"], 16),
+                accepted=failure.accepted,
+                hint=f"wait until it has done its work, or give more than --retries {self.retries}",
+            )
+        raise self.silence(request, failure, account)
+
+    def let_work(self, attempt: int) -> None:
+        """Wait for a PLC that is busy, longer each time.
+
+        Args:
+            attempt: how often it was waited for already.
+        """
+        if attempt < self.retries:
+            pause_s = min(self.timeout_s * 2**attempt, LONGEST_PAUSE_S)
+            self.hearing.listen_until(self.transport.clock() + pause_s)
+
+    def _tell_if_late(self) -> None:
+        late_s = self.hearing.late_s
+        if late_s > self._late_told_s:
+            self._late_told_s = late_s * ROOM  # told again when it is much later than that
+            self.warn(
+                f"answers come late: {late_words(late_s, self.timeout_s)}; "
+                f"give --timeout {longer_timeout(late_s):g}"
+            )
 
     @property
     def suspicions(self) -> int:
@@ -180,6 +227,14 @@ class Link:
         if self.read_only and request.writes:
             raise LineReadOnly(f"{request.command.words} ({request.command:02X})")
 
+    def begin_with_echo(self) -> None:
+        """What is known of an echo before anything was asked: a TCP server has none.
+
+        Of unit 0 nothing counts as known, so that a read goes before a write.
+        """
+        if self.numbered:
+            self.echoes = None if self.station == 0 else False
+
     def _needs_a_read_before(self, request: Request[Any]) -> bool:
         """True where nothing is known of this line yet, and this request could be misunderstood.
 
@@ -191,51 +246,12 @@ class Link:
     # --- one try ----------------------------------------------------------------------------------
 
     def learn_echo(self) -> None:
-        """Ask what cannot be mistaken for its own echo, and hear whether the line echoes.
-
-        Raises:
-            LineError: nothing was learnt by this try; the PLC may not even have answered.
-        """
-        self.try_once(self.codec.probe)
-        if self.echoes is None:
-            self.hearing.doubt = True
-            self.hearing.words = self.hearing.words or "more than one answer"
-            raise FrameError("something beside the answer: it may have been an echo or not")
+        """See ``Attempts.learn_echo``."""
+        self._attempts.learn_echo()
 
     def try_once(self, request: Request[A]) -> A:
-        """Send a request once and wait for its answer.
-
-        Whether the line echoes is the caller's to know before it sends what its own echo would answer.
-
-        Raises:
-            TransportTimeout, TransportClosed, FrameError: this try has failed, and left a doubt.
-            PlcRefused: the answer is an error code.
-            LineReadOnly: it writes, and the line may only be read.
-        """
-        sent = self.prepare(request)
-        self.hearing.words = ""
-        self.counters.exchanges += 1
-        try:
-            self.sender.send(sent)
-            size = self.codec.answer_bytes(request)
-            deadline = self.transport.clock() + (len(sent.raw) + size) * self.byte_time_s
-            return self._await(request, sent, size, deadline + self.timeout_s * self.hearing.patience)
-        except TransportTimeout:
-            self.counters.timeouts += 1
-            self.hearing.lost()
-            if not self.hearing.words:
-                self._silent_tries += 1
-                if self._silent_tries >= _SILENT_TRIES_BEFORE_RENEWAL:
-                    self._silent_tries = 0
-                    self.transport.renew()
-            raise
-        except PlcRefused:
-            raise
-        except BaseException:  # an interrupt too: the answer may still come
-            self.hearing.lost()
-            raise
-        finally:
-            self.sender.heard_out()
+        """See ``Attempts.once``."""
+        return self._attempts.once(request)
 
     def prepare(self, request: Request[Any]) -> Sent:
         """A request as it goes out; its answer may come from now on, until the next fence.
@@ -249,103 +265,52 @@ class Link:
         self.fences.note_asked(request)
         return self.sender.prepare(request)
 
-    def _await(self, request: Request[A], sent: Sent, size: int, deadline: float) -> A:
-        raw = sent.raw
-        echo_due = self.echoes is True
-        heard_before = self.counters.bytes_heard
-        while True:
-            frame = self._next_frame(size, deadline)
-            if frame.raw == raw and (echo_due or not self.codec.echo_may_pass(request)):
-                self._hear_echo()
-                echo_due = False
-            elif not sent.answered_by(frame):
-                self.hearing.stray(frame)
-            else:
-                try:
-                    answer = self.codec.parse_answer(request, frame)
-                except TransportTimeout as error:  # what a gateway says instead of the PLC
-                    self.hearing.words = error.message
-                    raise
-                except FrameError as error:
-                    self.hearing.words = error.message
-                    self.hearing.stray(frame)
-                    continue
-                if isinstance(request, Loopback) and answer != request.data:
-                    self.hearing.words = "another loopback's answer"
-                    self.hearing.stray(frame)
-                    continue
-                self._silent_tries = 0
-                self.answered.add(request.command)
-                if self.echoes is None and not self.codec.echo_may_pass(request):
-                    beside = self.counters.bytes_heard - heard_before - len(frame.raw)
-                    if beside < len(raw):  # too little for an echo, even a damaged one
-                        self.echoes = False
-                return answer
-
-    def _next_frame(self, size: int, deadline: float) -> Frame:
-        """The next whole frame; bad bytes on the way are dropped and counted."""
-        while True:
-            try:
-                frame = self.hearing.decoder.next_frame()
-            except FrameError as error:
-                self.hearing.bad_bytes(error)
-                if error.checksum and len(error.raw) == size:  # the answer, damaged: no use in waiting
-                    raise
-                continue
-            if frame is not None:
-                return frame
-            rest = deadline - self.transport.clock()
-            if rest <= 0:
-                if self.hearing.decoder.expect_no_more():
-                    continue
-                raise TransportTimeout(f"{self.transport.name}: no answer in time")
-            try:
-                data = self.transport.read(_READ_BYTES, rest)
-            except TransportTimeout:
-                continue
-            self.counters.bytes_heard += len(data)
-            self.hearing.decoder.feed(data)
-
-    def _hear_echo(self) -> None:
-        self.counters.echoes += 1
-        self.hearing.words = "its own request only (the line echoes)"
-        if self.echoes is False:  # fences so far may have been their own echo
-            self.hearing.doubt = True
-            self.hearing.suspicions += 1
-        self.echoes = True
+    @property
+    def wait_s(self) -> float:
+        """How long an answer is waited for, beside wire time: longer where answers were seen to come late."""
+        late_s = self.hearing.late_s
+        if not late_s:
+            return self.timeout_s
+        return min(max(self.timeout_s, ROOM * late_s), MOST_PATIENCE * self.timeout_s)
 
     # --- after a failure --------------------------------------------------------------------------
 
-    def took(self, request: Request[A]) -> bool:
+    def took(self, request: Request[A], account: Account | None = None) -> bool:
         """Read back a write whose answer was lost: did the PLC take it?
 
         Raises:
             LineError: that is not known.
         """
         question, took = read_back(request)  # type: ignore[arg-type]  # request.writes: its answer is None
+        account = account or Account(self)
+        account.tries = account.tries or 1  # it was sent, whoever did
         try:
             return took(self.ask(question))
-        except PlcRefused:
+        except (PlcRefused, PlcBusy):
             return False
         except LineError as error:
-            raise self.silence(request, error, unknown=True) from error
+            raise self.silence(request, error, account, unknown=True) from error
 
     def silence(
-        self, request: Request[A], failure: LineError | None, *, alive: bool = False, unknown: bool = False
+        self, request: Request[A], failure: LineError | None, account: Account, *, unknown: bool = False
     ) -> LineError:
-        """The error for a request that found no answer to trust: see ``silence.no_answer``."""
+        """The error for a request that found no answer to trust: see ``silence.Silence``."""
         if isinstance(failure, TransportClosed):
             return failure
-        return no_answer(
-            request,
-            self.hearing.words,
-            station=self.station,
-            target=self.transport.name,
-            line=self.transport.line or self.codec.name,
-            tries=self.retries + 1,
-            timeout_s=self.timeout_s,
-            alive=alive,
-            served=request.command in self.answered,
-            unknown=unknown,
-            fence="loopbacks" if Command.LOOPBACK in self.codec.commands else "other questions",
-        )
+        if not account.alive:
+            self._listen_for_late()
+        return Silence(self, request, failure, account, unknown).error()
+
+    def _listen_for_late(self) -> None:
+        """Before a PLC is called silent: is it only late?"""
+        hearing, since = self.hearing, self.hearing.owed_since
+        if since is not None and not hearing.late_s and not hearing.words:
+            longest_s = min(MOST_PATIENCE * self.timeout_s, self.timeout_s + LONGEST_LISTENING_S)
+            hearing.listen_until(since + longest_s, or_late=True)
+
+
+def _may_be_made(request: Request[Any], failure: LineError | PlcBusy | None) -> bool:
+    """True for a write that may have been made, though this was its answer."""
+    if isinstance(failure, GatewayTimeout) and not failure.handed_on:
+        return False
+    return request.writes and not (isinstance(failure, PlcBusy) and not failure.accepted)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
+from fatektool.protocol.commands import Loopback
+
 if TYPE_CHECKING:
     from fatektool.link import Link
     from fatektool.protocol.codec import Frame
@@ -14,12 +16,23 @@ _LEAST_QUIET_S: Final = 0.00175
 
 
 class Sent(NamedTuple):
-    """A request as it goes out, and what its answer must bear."""
+    """A request as it goes out, and what its answer must bear.
+
+    Attributes:
+        raw: the frame.
+        station: who is asked.
+        code: the command in its frame.
+        number: of it; 0 where there are none.
+        size: length of its answer in bytes.
+        data: what a loopback must bring back; None for any other request.
+    """
 
     raw: bytes
     station: int
     code: int
     number: int
+    size: int
+    data: bytes | None
 
     def answered_by(self, frame: Frame) -> bool:
         """True if the frame may be its answer, as far as station, command and number tell."""
@@ -49,7 +62,14 @@ class Sender:
         """
         codec, station = self._link.codec, self._link.station
         number = self._number = (self._number + 1) % codec.numbers
-        return Sent(codec.encode(station, request, number), station, codec.code(request), number)
+        return Sent(
+            codec.encode(station, request, number),
+            station,
+            codec.code(request),
+            number,
+            codec.answer_bytes(request),
+            request.data if isinstance(request, Loopback) else None,
+        )
 
     def send(self, sent: Sent) -> None:
         """Write a request, when the line has been silent for as long as the protocol wants it."""
@@ -57,6 +77,7 @@ class Sender:
         if self._quiet_s:
             link.hearing.listen_until(self._quiet_from + self._quiet_s)
         link.transport.write(sent.raw)
+        link.hearing.expect(sent, (len(sent.raw) + sent.size) * link.byte_time_s)
 
     def heard_out(self) -> None:
         """The line may be silent from now on."""

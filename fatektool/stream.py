@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeVar
 
-from fatektool.errors import FrameError, PlcRefused, TransportError, TransportTimeout
+from fatektool.errors import FrameError, PlcBusy, PlcRefused, TransportError, TransportTimeout
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -76,7 +76,7 @@ def _read_ahead(link: Link, requests: Sequence[Request[A]], first: int, take: Ca
         asked = sent
         if place < last:
             sent = link.prepare(requests[place + 1])
-        received = _receive(link, requests[place], len(asked.raw))
+        received = _receive(link, asked)
         link.sender.heard_out()
         if received is None:
             return True
@@ -97,7 +97,7 @@ def _write_by_write(
         link.counters.exchanges += 1
         if place + 1 < len(requests):
             sent = link.prepare(requests[place + 1])
-        waiting = _receive(link, requests[place], len(asked.raw))
+        waiting = _receive(link, asked)
         link.sender.heard_out()
         if waiting is None:
             return True
@@ -110,11 +110,11 @@ def _write_by_write(
     return False
 
 
-def _receive(link: Link, request: Request[A], sent: int) -> Frame | bytes | None:
+def _receive(link: Link, sent: Sent) -> Frame | bytes | None:
     """Bytes of the answer's length, not looked at; a frame, if one came before; else None, and a doubt."""
     hearing, transport = link.hearing, link.transport
-    size = link.codec.answer_bytes(request)
-    rest = wait_s = (sent + size) * link.byte_time_s + link.timeout_s * hearing.patience
+    size = sent.size
+    rest = wait_s = (len(sent.raw) + size) * link.byte_time_s + link.wait_s
     began = transport.clock()
     whole = b""
     while rest > 0:
@@ -171,6 +171,8 @@ def _accept(
     except PlcRefused:
         if request.writes:
             raise
+        return False
+    except PlcBusy:  # to be asked again, with pauses
         return False
     hearing.stray(frame)
     return False

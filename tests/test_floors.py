@@ -20,7 +20,7 @@ FLOORS = {
     "errors": 0,
     "version": 0,
     "counters": 1,
-    "silence": 2,
+    "silence": 3,
     "hearing": 3,
     "stream": 3,
     "protocol": 1,
@@ -31,6 +31,7 @@ FLOORS = {
     "transport": 2,
     "planner": 3,
     "link": 3,
+    "attempt": 3,
     "fences": 3,
     "sending": 3,
     "batch": 3,
@@ -46,7 +47,18 @@ FLOORS = {
 }
 """A room may import from lower floors and from itself; the link's parts and the client share a floor."""
 
-SHARED = {"hearing", "fences", "sending", "link", "stream", "batch", "client", "planner"}
+SHARED = {
+    "hearing",
+    "attempt",
+    "silence",
+    "fences",
+    "sending",
+    "link",
+    "stream",
+    "batch",
+    "client",
+    "planner",
+}
 TO_THE_SIMULATOR = {"simulator", "connection", "cli"}
 PRINTERS = {"click", "rich", "logging"}
 

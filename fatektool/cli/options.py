@@ -132,6 +132,7 @@ class Connection:
             lend=lend,
             note=voice.detail,
             waiting=voice.say,
+            warn=voice.warn,
         )
 
     def open_line(self, voice: Voice, stack: ExitStack) -> Transport:

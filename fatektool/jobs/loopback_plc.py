@@ -53,7 +53,7 @@ class PlcExchanger(Exchanger):
                 self._link.learn_echo()
             except TransportClosed:
                 raise
-            except (LineError, PlcRefused):
+            except LineError:
                 if self._link.echoes is None:
                     continue
             break
@@ -70,7 +70,7 @@ class PlcExchanger(Exchanger):
     def ready(self) -> None:
         """Look at what lies in the input."""
         self._link.hearing.drop_input()
-        self._link.hearing.patience = 1  # a test gives every answer the same time
+        self._link.hearing.late_s = 0.0  # a test gives every answer the same time
         self._seen.clear()
 
     def _try(self, data: bytes) -> str | None:

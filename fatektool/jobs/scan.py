@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from math import inf
 from typing import TYPE_CHECKING, Final
 
-from fatektool.errors import FrameError, PlcRefused, TransportClosed, TransportTimeout, UsageError
+from fatektool.errors import FrameError, PlcBusy, PlcRefused, TransportClosed, TransportTimeout, UsageError
 from fatektool.protocol.codec import require_station
 from fatektool.protocol.status import BriefStatus
 
@@ -241,14 +241,14 @@ class _Scanner:
         probe = codec.probe
         if not frame.station and 0 not in codec.stations:  # a broadcast: nobody answers under it
             return False
-        if frame.command != codec.code(probe) or frame.raw == codec.encode(frame.station, probe):
-            return False
         try:
+            if frame.command != codec.code(probe) or frame.raw == codec.encode(frame.station, probe):
+                return False
             answer = codec.parse_answer(probe, frame)
             brief = answer if isinstance(answer, BriefStatus) else None
-        except TransportTimeout:  # a gateway that found nobody
+        except (TransportTimeout, UsageError):  # a gateway that found nobody; a station that no frame has
             return False
-        except PlcRefused:
+        except (PlcRefused, PlcBusy):
             pass
         known = [(found.station, found.setting) for found in self._result.found]
         if (frame.station, setting) not in known:

@@ -134,7 +134,8 @@ class Codec(Protocol):
 
         Raises:
             PlcRefused: an error code.
-            TransportTimeout: a gateway says that it got no answer.
+            PlcBusy: it is at work, and is to be asked again.
+            GatewayTimeout: a gateway says that it got no answer.
             FrameError: no answer to this request, by length or content.
         """
 

@@ -33,7 +33,7 @@ ETX: Final = b"\x03"
 FRAMING_BYTES: Final = 8  # STX, station, command, LRC, ETX
 MAX_DATA: Final = 500
 MAX_FRAME: Final = FRAMING_BYTES + MAX_DATA
-LAST_STATION: Final = 0xFE
+LAST_STATION: Final = 0xFF
 _MAX_BUFFER: Final = 1 << 16
 
 _PAIRS: Final = [b"%02X" % value for value in range(256)]
@@ -52,7 +52,7 @@ def frame_bytes(station: int, command: int, data: bytes) -> bytes:
     """One frame.
 
     Args:
-        station: 0 to 254; 0 is everyone, and nobody answers.
+        station: 0 to 255; 0 is everyone, and nobody answers; 255 is in no paper, and is used.
         command: the command's code.
         data: 0 to 500 characters without STX and ETX.
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
-from fatektool.errors import FrameError, PlcRefused, TransportTimeout, UsageError
+from fatektool.errors import FrameError, GatewayTimeout, PlcBusy, PlcRefused, UsageError
 from fatektool.protocol import modbus_pdu
 from fatektool.protocol.commands import (
     Command,
@@ -55,7 +55,16 @@ MEANINGS: Final = {
     0x06: "the PLC is busy",
     0x08: "a parity error in the PLC's memory",
 }
-GATEWAY: Final = {0x0A: "it has no way there", 0x0B: "nothing came back from there"}
+GATEWAY: Final = {0x0A: "it has no path to the PLC", 0x0B: "it asked the PLC, and got no answer"}
+_AT_THE_GATEWAY: Final = {
+    0x0A: "is this station in the gateway's table, and at the right port of it? Check --station too; a gateway "
+    "that has too much to do says the same",
+    0x0B: "behind the gateway: is the PLC on, its station right, are the speed and format of the gateway's "
+    "serial port those of the PLC? A PLC slower than the gateway's own time-out looks the same",
+}
+_NO_PATH: Final = 0x0A
+_ACCEPTED: Final = 0x05
+_BUSY: Final = (_ACCEPTED, 0x06)
 _NEXT: Final = {
     0x01: "is it a FATEK PLC? Others have other functions",
     0x02: "'fatektool modbus map' shows the standard map; a PLC with R3968 = A55AH needs --modbus-map",
@@ -171,7 +180,8 @@ def parse_answer(request: Request[A], pdu: bytes, modbus_map: ModbusMap) -> A:
 
     Raises:
         PlcRefused: an exception.
-        TransportTimeout: a gateway says that it got no answer.
+        PlcBusy: an exception that is not for good.
+        GatewayTimeout: a gateway says that it got no answer.
         FrameError: no answer to this request, by length or content.
     """
     said = modbus_pdu.parse_answer(pdu)
@@ -239,11 +249,23 @@ def _joined(parts: Sequence[int], each: int) -> tuple[int, ...]:
     )
 
 
-def _refusal(request: Request[Any], said: Pdu) -> PlcRefused | TransportTimeout:
+def _refusal(request: Request[Any], said: Pdu) -> PlcRefused | PlcBusy | GatewayTimeout:
     code = said.exception
     if code in GATEWAY:
-        return TransportTimeout(f"the gateway says: {GATEWAY[code]} (exception {code:02X})")
+        return GatewayTimeout(
+            f"the gateway says: {GATEWAY[code]} (exception {code:02X})",
+            handed_on=code != _NO_PATH,
+            hint=_AT_THE_GATEWAY[code],
+        )
     meaning = MEANINGS.get(code, "a code that Modbus does not list")
+    if code in _BUSY:
+        return PlcBusy(
+            f"the PLC did not {asked(request)} (Modbus function {said.function:02X}): exception {code:02X}, "
+            f"{meaning}",
+            code=code,
+            command=said.function,
+            accepted=code == _ACCEPTED,
+        )
     return PlcRefused(
         f"the PLC refused to {asked(request)} (Modbus function {said.function:02X}): exception {code:02X}, "
         f"{meaning}",

@@ -44,7 +44,7 @@ FRAMING_BYTES: Final = 8  # header, ID, length, CRC, terminator
 MIN_PAYLOAD: Final = 2  # station, command
 MAX_PAYLOAD: Final = 5 + 64 * 7
 MAX_FRAME: Final = FRAMING_BYTES + MAX_PAYLOAD
-LAST_STATION: Final = 0xFE
+LAST_STATION: Final = 0xFF
 _MAX_BUFFER: Final = 1 << 16
 
 _BEGINNING: Final = re.compile(
@@ -58,7 +58,7 @@ def frame_bytes(header: int, station: int, command: int, data: bytes) -> bytes:
 
     Args:
         header: QUERY or RESPONSE.
-        station: 0 to 254; 0 is everyone, and nobody answers.
+        station: 0 to 255; 0 is everyone, and nobody answers; 255 is in no paper, and is used.
         command: the command's code.
         data: 0 to 451 bytes.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from fatektool.errors import NoAnswer, PlcRefused
+from fatektool.errors import NoAnswer
 from fatektool.protocol.commands import Loopback, ReadBriefStatus, ReadRegisters
 from fatektool.protocol.elements import Element
 
@@ -154,7 +154,7 @@ def test_patience_has_an_end() -> None:
     for _ in range(6):
         with pytest.raises(NoAnswer):
             link.ask(R0)
-    assert link.hearing.patience <= 4
+    assert link.wait_s == 4 * 0.5
 
 
 # --- a PLC without 4E -------------------------------------------------------------------------------
@@ -191,10 +191,15 @@ def test_a_loopback_that_was_answered_once_is_owed_ever_after() -> None:
         link.fences.close()
 
 
-def test_a_refused_fence_is_told() -> None:
-    peer = Rules({nonce(0): frame("4E4")}, loopback=False)
-    with pytest.raises(PlcRefused, match=r"loopback \(4E\)"):
-        linked(peer).fence()
+def test_a_refused_fence_leaves_it_to_silence() -> None:
+    """The refusal of what the link asks for itself is not told as that of what it was asked."""
+    peer = Rules({ASK_R0: lambda asked: soon(ZERO) if asked else SILENCE}, loopback=False)
+    peer.answers |= {nonce(number): frame("4E4") for number in range(4)}
+    link = linked(peer)
+    assert link.ask(R0) == (0xA000,)
+    assert peer.heard == [ASK_R0, STATUS, nonce(0), ASK_R0]
+    assert peer.times[3] - peer.times[2] > 0.5  # as long as a PLC may take, nothing was heard
+    assert link.counters.fences == 0
 
 
 def test_a_public_fence_is_one_loopback_once_the_line_is_known() -> None:

@@ -49,7 +49,9 @@ def said(link: Link, request: object = R0) -> NoAnswer:
 
 def test_a_dead_line() -> None:
     error = said(linked(Script()))
-    assert "to 'read registers' (46) in 4 tries of 0.5 s: nothing heard" in error.message
+    assert (
+        "to 'read registers' (46) in 1 try and 4 other requests, 2.6 s in all: nothing heard" in error.message
+    )
     assert "is the PLC on and the cable in?" in str(error.hint)
     assert "9600 7E1" in str(error.hint)
     assert error.details["heard"] is None
@@ -122,7 +124,7 @@ def test_a_write_of_unknown_fate() -> None:
 
 
 def test_one_try() -> None:
-    assert "in 1 try of 0.5 s" in said(linked(Script(), retries=0)).message
+    assert "in 1 try, 2.0 s in all: nothing heard" in said(linked(Script(), retries=0)).message
 
 
 def test_the_line_is_named_where_there_is_one() -> None:
@@ -132,7 +134,8 @@ def test_the_line_is_named_where_there_is_one() -> None:
     with pytest.raises(NoAnswer) as caught:
         link.ask(Loopback(b"A"))
     assert caught.value.message.startswith(
-        "no answer from station 9 on /dev/ttyUSB0 (19200 8N1) to 'loopback'"
+        "no answer from station 9 on /dev/ttyUSB0 (19200 8N1) to 'read brief status' (40), "
+        "which goes before 'loopback' (4E)"
     )
-    assert "2 tries of 1.25 s" in caught.value.message
+    assert "in 3 requests, 3.8 s in all: nothing heard" in caught.value.message
     assert isinstance(caught.value, LineError)

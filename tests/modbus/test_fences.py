@@ -102,13 +102,22 @@ def test_an_exception_to_an_earlier_question_refuses_nothing(registers_only: boo
     assert linked(Peer(refuses_late), codec).ask(R100) == (100,)
 
 
-def test_a_fence_that_is_always_refused_is_told() -> None:
-    def refuses(request: bytes, _: int) -> Pieces:
-        return [(0.01, sealed(f"01 {request[1] | 0x80:02X} 02"))]
+def test_a_fence_that_is_always_refused_leaves_it_to_silence() -> None:
+    """The refusal of what the link asks for itself is not told as that of what it was asked."""
 
-    link = linked(Peer(refuses))
-    with pytest.raises(PlcRefused, match="exception 02"):
-        link.fence()
+    def has_r100_alone(request: bytes, number: int) -> Pieces:
+        if number == 1:
+            return []
+        r100 = request[1:6] == bytes.fromhex("03 0064 0001")
+        return [(0.01, served(request) if r100 else sealed(f"01 {request[1] | 0x80:02X} 02"))]
+
+    peer = Peer(has_r100_alone)
+    link = linked(peer)
+    assert link.ask(R100) == (100,)
+    assert len(peer.heard) == 1 + 4 + 1
+    assert peer.times[-1] - peer.times[-2] > 0.5
+    with pytest.raises(PlcRefused, match="R200"):
+        link.ask(R200)
 
 
 # --- a map too small for a fence ------------------------------------------------------------------
@@ -184,8 +193,11 @@ def test_what_a_gateway_says_is_no_refusal() -> None:
 
     assert linked(Peer(gateway), TCP).ask(R100) == (9,)
     link = linked(Peer(lambda request, _: gateway(request, 0)), TCP)
-    with pytest.raises(NoAnswer, match=r"the gateway says: nothing came back from there \(exception 0B\)"):
+    with pytest.raises(
+        NoAnswer, match=r"the gateway says: it asked the PLC, and got no answer \(exception 0B\)"
+    ) as told:
         link.ask(R100)
+    assert str(told.value.hint).startswith("behind the gateway: is the PLC on")
 
 
 # --- what is written ------------------------------------------------------------------------------

@@ -283,8 +283,9 @@ def test_stations() -> None:
     assert FACON.encode(0, RunStop(run=False))[1:3] == b"00"
     assert FACON.encode(10, RunStop(run=False))[1:3] == b"0A"
     assert FACON.encode(254, RunStop(run=False))[1:3] == b"FE"
-    for station in (-1, 255, 256):
-        with pytest.raises(UsageError, match=f"station: expected 0 to 254, got {station}"):
+    assert FACON.encode(255, RunStop(run=False))[1:3] == b"FF"  # in no paper, and used
+    for station in (-1, 256):
+        with pytest.raises(UsageError, match=f"station: expected 0 to 255, got {station}"):
             FACON.encode(station, RunStop(run=False))
 
 

@@ -72,9 +72,9 @@ def test_every_frame_of_the_tables_fits() -> None:
     assert 8 + 2 + 1 + 3 + 256 == 270 < MAX_FRAME
 
 
-@pytest.mark.parametrize("station", [-1, 255])
+@pytest.mark.parametrize("station", [-1, 256])
 def test_stations(station: int) -> None:
-    with pytest.raises(UsageError, match="station: expected 0 to 254"):
+    with pytest.raises(UsageError, match="station: expected 0 to 255"):
         MSERIES.encode(station, RunStop(run=True))
 
 
