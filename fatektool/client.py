@@ -183,13 +183,19 @@ class Plc:
         self.link.ask(RunStop(run))
         clock = self.link.transport.clock
         deadline = clock() + self.link.timeout_s
+        word, other = ("RUN", "STOP") if run else ("STOP", "RUN")
         for _ in range(_MODE_TRIES):  # a PLC may need a scan or two
-            flags = self.brief_status().flags
+            try:
+                flags = self.brief_status().flags
+            except PlcRefused as error:
+                raise PlcError(
+                    f"the PLC acknowledged {word}, and its mode cannot be read back: {error.message}",
+                    hint="look at the PLC: its RUN lamp tells",
+                ) from error
             if flags.running == run:
                 return
             if clock() > deadline:
                 break
-        word, other = ("RUN", "STOP") if run else ("STOP", "RUN")
         raise PlcError(
             f"the PLC acknowledged {word}, but its status still says {other}",
             hint="see 'fatektool status': an emergency stop or the PLC's own switch may hold it",

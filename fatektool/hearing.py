@@ -10,6 +10,7 @@ late, and how late tells how long this PLC takes to answer.
 from __future__ import annotations
 
 from collections import deque
+from math import inf
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from fatektool.counters import Counters
@@ -77,6 +78,7 @@ class Hearing:
         self._transport = transport
         self._station = station
         self._doubtful: set[int] = set()  # other stations, whose late answers may still come
+        self._answered_at = -inf  # when the last stray answer came
         self._awaited: Awaited | None = None  # the last request
         self._owed: deque[Awaited] = deque(maxlen=_MOST_OWED)  # those without an answer since the last fence
 
@@ -158,8 +160,13 @@ class Hearing:
             else:
                 self._owed.remove(owed)
                 if owed.waited_for:  # it came, but late: this PLC gets more time from now on
-                    self.late_s = max(self.late_s, self._transport.clock() - owed.since)
+                    self.late_s = max(self.late_s, self._took_s(owed))
+            self._answered_at = self._transport.clock()
         self.on_stray(frame)
+
+    def _took_s(self, owed: Awaited) -> float:
+        """How long a PLC took for an answer that has just come: it does one thing after the other."""
+        return self._transport.clock() - max(owed.since, self._answered_at)
 
     def _answer_to_nothing(self, frame: Frame, asked: Sent | None) -> None:
         if asked is not None and (frame.command, frame.number) == (asked.code, asked.number):

@@ -106,13 +106,23 @@ def _show(
     """
     on = read_elements(plc, elements)
     flags, held = read_disabled(plc, on.values)
-    unread = {str(element): error for element, error in (on.errors | held.errors).items()}
-    not_asked = [name for name in map(str, sorted(on.not_asked | held.not_asked)) if name not in refused]
     tells = Command.READ_DISABLED in plc.link.codec.commands
+    switched = control in {Control.SET, Control.RESET}
+    asked_itself = switched or not tells  # whether they are disabled is only shown beside it
+    unread = {str(element): error for element, error in on.errors.items()}
+    if not asked_itself:
+        unread |= {str(element): error for element, error in held.errors.items()}
+    if control is not None:
+        unread = {
+            name: f"acknowledged, but not proven: it cannot be read back: {error}"
+            for name, error in unread.items()
+        }
+    missing = on.not_asked if asked_itself else on.not_asked | held.not_asked
+    not_asked = [name for name in map(str, sorted(missing)) if name not in refused]
     states: dict[str, dict[str, bool | None]] = {
         str(element): {"on": bool(on.values[element]), "disabled": flags.get(element)}
         for element in elements
-        if element in (flags if tells else on.values)
+        if element in (on.values if asked_itself else flags)
     }
     not_taken = {
         name: _why(name, state["disabled"], control, holds=tells)

@@ -174,8 +174,7 @@ def _set_lines(
 
 def _did_not(each: NotTaken) -> str:
     bits = each.element.kind.bits
-    got = "cannot be read" if each.got is None else f"holds {_text(bits, each.got)}"
-    return f"did not take: expected {_text(bits, each.wanted)}, it {got}: {each.reason}"
+    return each.words(lambda raw: _text(bits, raw))
 
 
 def _document(

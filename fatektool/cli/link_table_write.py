@@ -144,8 +144,7 @@ def _file_stem(file: Path) -> str:
 
 
 def _did_not(each: NotTaken) -> str:
-    got = "cannot be read" if each.got is None else f"holds {each.got:04X}"
-    return f"did not take: expected {each.wanted:04X}, it {got}: {each.reason}"
+    return each.words(lambda raw: f"{raw:04X}")
 
 
 def _result_lines(plan: WritePlan, failed: list[NotTaken], *, dry_run: bool) -> Iterator[str]:

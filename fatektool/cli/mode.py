@@ -9,7 +9,7 @@ import click
 from fatektool.cli.broadcast import broadcast_option, means_all, send_to_all
 from fatektool.cli.documents import where
 from fatektool.cli.options import Connection, connection_options, yes_option
-from fatektool.errors import UsageError
+from fatektool.errors import PlcError, PlcRefused, UsageError
 from fatektool.protocol.commands import Command, RunStop
 
 if TYPE_CHECKING:
@@ -40,7 +40,10 @@ def _change(connection: Connection, voice: Voice, *, run: bool, broadcast: bool,
         send_to_all(connection, voice, mode, [RunStop(run)], yes=yes)
         return
     with connection.open(voice, needs=(Command.RUN_STOP,), writes=True) as plc:
-        before = plc.brief_status().flags.running
+        try:
+            before = plc.brief_status().flags.running
+        except PlcRefused as error:
+            raise PlcError(f"{mode} was not sent: the mode comes first, and {error.message}") from error
         if before != run:
             question = (
                 f"Station {connection.station} on {connection.target} is in {_word(running=before)}. {mode}?"

@@ -105,8 +105,7 @@ def apply_command(
 
 def _did_not(each: NotTaken) -> str:
     digits = max(1, each.element.kind.bits // 4)
-    got = "cannot be read" if each.got is None else f"holds {each.got:0{digits}X}"
-    return f"did not take: expected {each.wanted:0{digits}X} in {each.element}, it {got}: {each.reason}"
+    return each.words(lambda raw: f"{raw:0{digits}X}", str(each.element))
 
 
 def _go_on(connection: Connection) -> str:

@@ -12,7 +12,7 @@ from fatektool.cli.modbus_map import modbus_map_option
 from fatektool.cli.options import Connection, connection_options, yes_option
 from fatektool.cli.read import shown, warn_of
 from fatektool.connection import codec_named
-from fatektool.errors import DataError, LineError, PlcError
+from fatektool.errors import DataError, LineError, PlcBusy, PlcError
 from fatektool.jobs.assignment import parse_assignments
 from fatektool.jobs.register_writes import write_elements
 from fatektool.planner import plan_writes
@@ -20,6 +20,7 @@ from fatektool.protocol.values import Value, decode
 
 if TYPE_CHECKING:
     from fatektool.cli.output import Voice
+    from fatektool.jobs.register_writes import NotTaken
     from fatektool.jobs.selection import Item
 
 
@@ -50,7 +51,7 @@ def write_command(
     with connection.open(voice, writes=True) as plc:
         try:
             failed = write_elements(plc, [(item.element, raw) for item, raw in pairs])
-        except LineError as error:
+        except (LineError, PlcBusy) as error:
             left = f"some of the {len(pairs)} values may be written: read them, or write them again"
             error.hint = f"{error.hint}; {left}" if error.hint else left
             raise
@@ -72,17 +73,13 @@ def write_command(
     taken = len(pairs) - len(failed)
     lines = [f"{taken} of {len(pairs)} elements written and read back"]
     voice.show(document, lines)
-    told = {}
-    for each in failed:
-        item = by_element[each.element]
-        wanted, got = (shown(_value(item, raw), None) for raw in (each.wanted, each.got))
-        told[item.key] = f"did not take: expected {wanted}, {_holds(got)}: {each.reason}"
+    told = {by_element[each.element].key: _told(by_element[each.element], each) for each in failed}
     warn_of(told, voice)
     return PlcError.exit_code if failed else 0
 
 
-def _holds(got: str) -> str:
-    return "it cannot be read" if got == "-" else f"it holds {got}"
+def _told(item: Item, each: NotTaken) -> str:
+    return each.words(lambda raw: shown(_value(item, raw), None))
 
 
 def _value(item: Item, raw: int | None) -> Value | None:

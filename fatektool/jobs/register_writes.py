@@ -20,26 +20,42 @@ from fatektool.protocol.commands import (
 from fatektool.protocol.elements import Element
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from fatektool.client import Plc
 
 
 @dataclass(frozen=True, slots=True)
 class NotTaken:
-    """A write that did not take.
+    """A write that did not take, or that is not proven.
 
     Attributes:
         element: which.
         wanted: what was written, raw.
         got: what it holds instead, raw; None if it cannot be read.
         reason: why, as far as that is known.
+        acknowledged: False if the PLC refused the write, or it was not even tried.
     """
 
     element: Element
     wanted: int
     got: int | None
     reason: str
+    acknowledged: bool = True
+
+    def words(self, shown: Callable[[int], str], place: str = "") -> str:
+        """What became of it.
+
+        Args:
+            shown: a raw value as the user reads it.
+            place: the element, where it is told under another name.
+        """
+        wanted = shown(self.wanted) + (f" in {place}" if place else "")
+        if self.got is not None:
+            return f"did not take: expected {wanted}, it holds {shown(self.got)}: {self.reason}"
+        if self.acknowledged:  # the refusal is of the read-back, which nobody asked for
+            return f"written and acknowledged, but not proven: it cannot be read back: {self.reason}"
+        return f"did not take: expected {wanted}: {self.reason}"
 
 
 def write_elements(plc: Plc, items: Sequence[tuple[Element, int]]) -> list[NotTaken]:
@@ -70,7 +86,10 @@ def write_elements(plc: Plc, items: Sequence[tuple[Element, int]]) -> list[NotTa
     ]
     reasons = found.errors | _why(plc, acknowledged) | refused
     return [
-        NotTaken(element, wanted, found.values.get(element), reasons[element]) for element, wanted in failed
+        NotTaken(
+            element, wanted, found.values.get(element), reasons[element], acknowledged=element not in refused
+        )
+        for element, wanted in failed
     ]
 
 
@@ -90,7 +109,9 @@ class _Writer:
             return {}
         groups = by_request(left, self._failed)
         unread = read_elements(self._plc, left).errors  # what cannot be read is not written either
-        refusals = Refusals(dict(unread))
+        refusals = Refusals(
+            {element: f"not tried, as it cannot be read either: {said}" for element, said in unread.items()}
+        )
         division = Division(wanted, self._write_together, self._write_alone, refusals)
         for group in groups:
             writable = [element for element in group if element not in unread]

@@ -17,7 +17,7 @@ import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
-from fatektool.errors import DataError, UsageError
+from fatektool.errors import DataError, PlcRefused, UsageError
 from fatektool.jobs.extent import limits
 from fatektool.jobs.registers import read_elements
 from fatektool.jobs.snapshot_spec import everything, items_in
@@ -117,7 +117,7 @@ def _snapshot(
     clock = plc.link.transport.clock
     time, began = utc(), clock()
     tells = Command.BRIEF_STATUS in plc.link.codec.commands
-    running = plc.brief_status().flags.running if tells else None
+    running = _running(plc) if tells else None
     reading = read_elements(plc, wanted, limits=within)
     items = items_of()  # not before all is read: there may be many thousands
     values: dict[str, Value | None] = {}
@@ -148,6 +148,15 @@ def _snapshot(
         errors,
         [item.item.key for item in items if item.item.element in reading.not_asked],
     )
+
+
+def _running(plc: Plc) -> bool | None:
+    """The mode, which nobody asked for: None if the PLC refuses to tell."""
+    try:
+        return plc.brief_status().flags.running
+    except PlcRefused as error:
+        plc.link.note(f"RUN or STOP is not known: {error.message}")
+        return None
 
 
 def _element(item: SpecItem, raw: int | None) -> dict[str, Any]:

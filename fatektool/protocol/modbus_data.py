@@ -57,8 +57,8 @@ MEANINGS: Final = {
 }
 GATEWAY: Final = {0x0A: "it has no path to the PLC", 0x0B: "it asked the PLC, and got no answer"}
 _AT_THE_GATEWAY: Final = {
-    0x0A: "is this station in the gateway's table, and at the right port of it? Check --station too; a gateway "
-    "that has too much to do says the same",
+    0x0A: "is this station in the gateway's table, and at the right port of it? Check --station too; a "
+    "gateway that has too much to do says the same",
     0x0B: "behind the gateway: is the PLC on, its station right, are the speed and format of the gateway's "
     "serial port those of the PLC? A PLC slower than the gateway's own time-out looks the same",
 }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -18,6 +18,8 @@ from .peer import Peer, Pieces, linked
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from fatektool.protocol.commands import Request
 
 R105 = Element("R", 105)
 TO_R105, FROM_R105 = WriteRegisters(R105, (7,)), ReadRegisters(R105, 1)
@@ -95,11 +97,12 @@ def test_a_slave_without_r0_takes_what_it_has(codec: ModbusCodec) -> None:
 @pytest.mark.parametrize("code", [5, 6])
 @pytest.mark.parametrize("request_", [FROM_R105, TO_R105], ids=["read", "write"])
 def test_who_is_busy_is_asked_again_after_growing_pauses(
-    codec: ModbusCodec, code: int, request_: ReadRegisters
+    codec: ModbusCodec, code: int, request_: Request[Any]
 ) -> None:
     slave = Slave(codec)
     link = linked(slave, codec)
-    link.learn_echo() if link.echoes is None else None
+    if link.echoes is None:
+        link.learn_echo()
     slave.asked.clear()
     slave.times.clear()
     slave.instead = lambda number, _: code if number <= 2 else None

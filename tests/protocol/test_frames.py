@@ -61,7 +61,7 @@ def test_error_texts() -> None:
     for code, meaning in MEANINGS.items():
         assert fatektool.error_text(code) == meaning
     assert fatektool.error_text(2, "modbus-rtu") == "illegal data address, not in the PLC's Modbus map"
-    assert fatektool.error_text(0xB, "modbus-tcp") == "the gateway says: nothing came back from there"
+    assert fatektool.error_text(0xB, "modbus-tcp") == "the gateway says: it asked the PLC, and got no answer"
     assert fatektool.error_text(0xE) == "a code that no paper lists"
     assert fatektool.error_text(0x7F, "modbus-tcp") == "a code that Modbus does not list"
 

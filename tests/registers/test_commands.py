@@ -106,7 +106,10 @@ def test_write_says_what_did_not_take(plant: Plant) -> None:
     done = plant.cli(*words)
     assert done.code == 4
     assert done.out == "2 of 8 elements written and read back\n"
-    assert "warning: R9000: did not take: expected 1, it cannot be read: the PLC refused" in done.err
+    assert (
+        "warning: R9000: did not take: expected 1: not tried, as it cannot be read either: the PLC refused"
+        in done.err
+    )
 
 
 def test_a_line_that_dies_while_writing(plant: Plant, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,89 @@
+"""Answers that come later than the time-out: told as late, with the time seen and a time-out to give."""
+
+from __future__ import annotations
+
+import pytest
+
+from fatektool.errors import NoAnswer
+from fatektool.link import Link
+from fatektool.protocol.commands import Loopback, ReadBriefStatus, ReadPage, ReadRegisters, WriteRegisters
+from fatektool.protocol.elements import Element
+from fatektool.protocol.facon import FACON
+from fatektool.silence import longer_timeout
+from fatektool.simulator.build import build_simulation
+from fatektool.transport.base import LineSettings
+from fatektool.transport.memory import MemoryTransport
+
+R0 = ReadRegisters(Element("R", 0), 1)
+TO_R0 = WriteRegisters(Element("R", 0), (7,))
+REQUESTS = [R0, TO_R0, ReadBriefStatus(), Loopback(b"A"), ReadPage(1)]
+
+
+def late(
+    delay_s: float, *, retries: int = 3, timeout_s: float = 0.5, warnings: list[str] | None = None
+) -> Link:
+    """A link to a PLC that takes so long for each answer, one after the other."""
+    simulation = build_simulation([1], ladder_words=64, scan_ms=1000 * delay_s, baud=9600)
+    return Link(
+        MemoryTransport(simulation.line()),
+        FACON,
+        1,
+        LineSettings(),
+        timeout_s=timeout_s,
+        retries=retries,
+        warn=(lambda _: None) if warnings is None else warnings.append,
+    )
+
+
+def failure_of(link: Link, request: ReadPage) -> NoAnswer | None:
+    try:
+        link.ask(request)
+    except NoAnswer as error:
+        return error
+    return None
+
+
+@pytest.mark.parametrize("request_", REQUESTS, ids=lambda request: type(request).__name__)
+@pytest.mark.parametrize("delay_s", [0.55, 0.7, 0.9, 1.1, 1.3, 1.6, 1.9])
+def test_it_is_answered_or_told_as_late(delay_s: float, request_: ReadPage) -> None:
+    for retries in range(5):
+        warnings: list[str] = []
+        link = late(delay_s, retries=retries, warnings=warnings)
+        error = failure_of(link, request_)
+        if error is not None:
+            assert "its answers come, but late: after" in error.message
+            assert "and --timeout is 0.5" in error.message
+            assert f"give --timeout {longer_timeout(link.hearing.late_s):g}" in str(error.hint)
+            assert error.details["late_s"] == pytest.approx(link.hearing.late_s, abs=0.001)
+        else:
+            (told,) = warnings
+            assert told.startswith("answers come late: after ")
+            assert "give --timeout" in told
+        assert delay_s - 0.01 <= link.hearing.late_s
+
+
+@pytest.mark.parametrize("delay_s", [0.55, 0.7, 0.9, 1.1, 1.3, 1.6, 1.9])
+def test_the_time_out_that_is_told_is_enough(delay_s: float) -> None:
+    link = late(delay_s, retries=0)
+    with pytest.raises(NoAnswer) as caught:
+        link.ask(R0)
+    told = float(str(caught.value.hint).removeprefix("give --timeout "))
+    warnings: list[str] = []
+    link = late(delay_s, retries=0, timeout_s=told, warnings=warnings)
+    for _ in range(3):
+        assert link.ask(R0) == (0,)
+    assert warnings == []
+
+
+def test_one_that_is_later_than_anybody_listens_is_silent() -> None:
+    link = late(30.0, retries=1)
+    with pytest.raises(NoAnswer, match="nothing heard"):
+        link.ask(R0)
+
+
+def test_it_is_told_once() -> None:
+    warnings: list[str] = []
+    link = late(0.9, warnings=warnings)
+    for _ in range(5):
+        link.ask(R0)
+    assert len(warnings) == 1
