@@ -13,12 +13,10 @@ from fatektool.cli.link_result import abnormal_rows, result_document
 from fatektool.cli.options import Connection, connection_options
 from fatektool.cli.output import Voice, table
 from fatektool.cli.read import warn_of
-from fatektool.jobs.link_host import LinkHost, read_host
 from fatektool.jobs.link_ports import PortsReport, read_ports
 from fatektool.protocol.link_codes import TRANSACTIONS, meaning, next_step
 from fatektool.protocol.link_kinds import TableKind
 from fatektool.protocol.link_settings import DIALLING, PROFILES
-from fatektool.protocol.link_versions import needs_of_ports
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -41,10 +39,9 @@ def ports_command(connection: Connection, voice: Voice) -> int:
     """
     with connection.open(voice) as plc:
         report = read_ports(plc)
-        host = read_host(plc, needs_of_ports(report.raw.get("R4047")))
-        document = _document(plc, report, host)
+        document = _document(plc, report)
     voice.show(document, _lines(report))
-    for warning in host.warnings():
+    for warning in report.host.warnings():
         voice.warn(warning)
     if voice.verbose:
         warn_of(report.errors, voice)
@@ -53,11 +50,11 @@ def ports_command(connection: Connection, voice: Voice) -> int:
     return 0
 
 
-def _document(plc: Plc, report: PortsReport, host: LinkHost) -> dict[str, Any]:
+def _document(plc: Plc, report: PortsReport) -> dict[str, Any]:
     return {
         "schema": "fatektool.link-ports/1",
         **where(plc),
-        "os": host_document(host),
+        "os": host_document(report.host),
         "ports": [
             asdict(port)
             | {

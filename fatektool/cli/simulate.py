@@ -95,7 +95,7 @@ _DEFAULT_MODELS = ", ".join(f"{spoken.model} with {name}" for name, spoken in SL
     metavar="MS",
     help="Give answers out at ticks of MS ms only, as a USB adapter does (16).",
 )
-@click.option("--no-program-commands", is_flag=True, help="Refuse 4F and 50, as some FBs units do.")
+@click.option("--no-program-commands", is_flag=True, help="Refuse 4F and 50, as an FBs may.")
 @click.option("--no-error-character", is_flag=True, help="Answer 4F and 53 as the paper's figures draw them.")
 @voice_options
 def simulate_command(

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import DataError, PlcError, UsageError
+from fatektool.jobs.link_host import LinkHost, read_host
 from fatektool.jobs.registers import named, read_elements
 from fatektool.protocol.elements import Element
 from fatektool.protocol.link_codes import meaning, next_step
@@ -25,6 +26,7 @@ from fatektool.protocol.link_settings import (
     decode_high_speed,
     decode_modem,
 )
+from fatektool.protocol.link_versions import MODBUS_ASCII, needs_of_ports
 
 if TYPE_CHECKING:
     from fatektool.client import Plc
@@ -43,6 +45,7 @@ class PortsReport:
         modem: of port 1.
         raw: values by element, unsigned.
         errors: what the PLC said of the elements that it refused.
+        host: which PLC it is, and what R4047 needs of it.
     """
 
     ports: tuple[Port, ...]
@@ -51,6 +54,7 @@ class PortsReport:
     modem: Modem
     raw: dict[str, int]
     errors: dict[str, str]
+    host: LinkHost
 
 
 def read_ports(plc: Plc) -> PortsReport:
@@ -62,13 +66,16 @@ def read_ports(plc: Plc) -> PortsReport:
     names = (*port_elements(), *SETTING_ELEMENTS)
     reading = read_elements(plc, map(Element.parse, names))
     values = {str(element): value for element, value in reading.values.items()}
+    host = read_host(plc, needs_of_ports(values.get("R4047")))
+    two_bits = MODBUS_ASCII.met(host.os_version) is not False
     return PortsReport(
-        tuple(decode_port(values, number) for number in PORTS),
+        tuple(decode_port(values, number, two_bits=two_bits) for number in PORTS),
         decode_detection(values),
         decode_high_speed(values),
         decode_modem(values),
         values,
         {str(element): error for element, error in reading.errors.items()},
+        host,
     )
 
 

@@ -13,7 +13,7 @@ FBs link paper, sections 13.1.2 (interface signals) and 13.2 (R4047)::
     D4044 = 00xxH   b1 to b4: a transaction takes at least 2 scans, else 3
     D4044 = 56xxH   b1 to b4: one edge starts all transactions; only then the last results are kept
     R4047 = 55xxH   b1 to b4: the port is a Modbus RTU slave, else FATEK
-    R4047 = 56xxH   two bits a port from b0 on: 0, 1 FATEK, 2 Modbus RTU, 3 Modbus ASCII
+    R4047 = 56xxH   two bits a port from b0 on: 0, 1 FATEK, 2 Modbus RTU, 3 Modbus ASCII; from OS 4.24 on
 
 The bits of the communication parameters stand in another chapter, which this paper refers to: they are shown
 as they are. TX delay is in 0.01 s always. A PLC without D4043 has no other unit than 0.01 s.
@@ -87,17 +87,18 @@ class Port:
     last_result: TransactionResult | None
 
 
-def slave_protocol(r4047: int, port: int) -> str:
+def slave_protocol(r4047: int, port: int, *, two_bits: bool = True) -> str:
     """What a port speaks as a slave.
 
     Args:
         r4047: the register.
         port: 1 to 4; port 0 is always FATEK.
+        two_bits: False for an OS that is known not to have 56xxH: there it is one of the other values.
     """
     match r4047 >> 8:
         case 0x55:
             return RTU if r4047 >> port & 1 else FATEK
-        case 0x56:
+        case 0x56 if two_bits:
             return _PROTOCOLS[r4047 >> 2 * (port - 1) & 3]
         case _:
             return FATEK
@@ -127,12 +128,13 @@ def port_elements() -> tuple[str, ...]:
     return tuple(found)
 
 
-def decode_port(values: Mapping[str, int], number: int) -> Port:
+def decode_port(values: Mapping[str, int], number: int, *, two_bits: bool = True) -> Port:
     """One port.
 
     Args:
         values: raw, by element; what the PLC refused is missing.
         number: 1 to 4.
+        two_bits: as for ``slave_protocol``.
     """
     own = PORT_ELEMENTS[number]
     r4047, d4043, d4044 = (values.get(name) for name in ("R4047", "D4043", "D4044"))
@@ -144,7 +146,7 @@ def decode_port(values: Mapping[str, int], number: int) -> Port:
         number,
         flag(values, own.free),
         flag(values, own.finished),
-        None if r4047 is None else slave_protocol(r4047, number),
+        None if r4047 is None else slave_protocol(r4047, number, two_bits=two_bits),
         values.get(own.parameters),
         None if times is None else hundredths(times >> 8),
         None if times is None else round((times & 0xFF) * unit, 2),

@@ -55,7 +55,7 @@ class Need:
         return found > (FBS_OS_MAJOR, self.tenths)
 
 
-MODBUS_ASCII: Final = Need("R4047 = 56xxH, and so Modbus ASCII", 2, 4)
+MODBUS_ASCII: Final = Need("R4047 = 56xxH (and with it Modbus ASCII)", 2, 4)
 INPUT_TYPES: Final = Need("reading slave types 1 and 3 (discrete inputs, input registers)", 2, 2)
 
 

@@ -26,6 +26,7 @@ MEANINGS: Final = {
     0xA: "illegal address, past what this PLC has",
 }
 
+# What to do next is this project's advice, the meanings are the paper's: [E:error-advice].
 _NEXT: Final = {
     0x3: "take the ROM pack out, or write the ROM pack itself",
     0x5: "restore a good backup: the program in the PLC is damaged",

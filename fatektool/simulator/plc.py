@@ -73,7 +73,7 @@ class SimulatedPlc:
         model: what it is; by default the FBE-28MC.
         pages: its program, as many pages of 128 bytes as the model has; a demonstration one if None.
         program_commands: False makes it refuse to have its program read or written (error 4), as
-            some FBs units do.
+            an FBs may [E:fbs-program].
 
     ``acknowledge_only`` True makes every write be checked and acknowledged but not made: a fault.
     """

@@ -1,7 +1,7 @@
 """What TCP and UDP share: a connected socket, its errors in the project's words.
 
 A connection that broke is made anew at the next ``write``: mixed Ethernet modules stop answering now and
-then, and a reconnect mends it.
+then, and a reconnect mends it [E:ethernet-reconnect].
 """
 
 from __future__ import annotations

@@ -63,7 +63,7 @@ def test_what_is_said() -> None:
     assert list(LinkHost("4.0").warnings()) == []
     assert list(LinkHost(None).warnings()) == []
     (said,) = LinkHost("4.0", needs).warnings()
-    assert said.endswith("Modbus ASCII needs OS 4.24 or later, and this PLC has OS 4.0")
+    assert said.endswith("Modbus ASCII) needs OS 4.24 or later, and this PLC has OS 4.0")
     (said,) = LinkHost("4.2", needs).warnings()
     assert "so it may have 4.20 to 4.29" in said
     (said,) = LinkHost(None, needs).warnings()
@@ -82,6 +82,7 @@ def test_ports_of_an_fbs_that_is_too_old(fbs: Plant) -> None:
     document = fbs.json("link-ports", "link", "ports")
     (need,) = document["os"]["needs"]
     assert (document["os"]["version"], document["os"]["fbs"], need["met"]) == ("4.0", True, False)
+    assert {port["protocol"] for port in document["ports"]} == {"FATEK"}  # as any other value
     assert "needs OS 4.24 or later, and this PLC has OS 4.0" in fbs.cli("link", "ports").err
     fbs.write("R4047=0x5502")
     assert fbs.json("link-ports", "link", "ports")["os"]["needs"] == []
