@@ -12,6 +12,7 @@ from fatektool.cli.documents import saved_document
 from fatektool.cli.image_words import warn_of_image
 from fatektool.cli.options import PATH, Connection, connection_options
 from fatektool.cli.output import Voice, table
+from fatektool.cli.pairs import together
 from fatektool.errors import FatektoolError, UsageError
 from fatektool.jobs.backup import backup
 from fatektool.jobs.times import stamp, utc
@@ -45,6 +46,7 @@ def backup_command(
     Without FILE the name is made of station and time; - is standard output. The PLC may run.
     """
     path = file or Path(f"fatek-st{connection.station:02}-{stamp(utc())}.json")
+    together("force", holds=path != STDOUT or raw is not None, needs="a file")
     require_raw_name(raw, path)
     for place in (path, raw):
         if place is not None and place != STDOUT:

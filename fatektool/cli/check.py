@@ -12,6 +12,7 @@ import click
 from fatektool.cli.alarms import Alarms, Told, alarm_options
 from fatektool.cli.fleet_jobs import Done
 from fatektool.cli.options import PATH, Connection, Seconds, connection_options
+from fatektool.cli.pairs import apart, together
 from fatektool.cli.plugin import PluginCommand, check_document, plugin_line
 from fatektool.errors import FatektoolError, UsageError
 from fatektool.inventory.find import EXPECTATIONS
@@ -90,8 +91,7 @@ def check_command(
     """
     if max_age is not None and backup is None:
         raise UsageError("--max-age goes with --backup FILE")
-    if reference is not None and no_reference:
-        raise UsageError("--reference does not go with --no-reference")
+    apart("reference", "no_reference")
     entry = connection.entry
     if entry is not None and reference is None:
         reference = entry.reference
@@ -101,6 +101,7 @@ def check_command(
         backup,
         None if max_age is None else parse_age(max_age),
     )
+    together("on_change", holds=plan.reference is not None, needs="a reference, with which to compare")
     name = connection.target if entry is None else entry.name
     began = time.monotonic()
     found = Checked()

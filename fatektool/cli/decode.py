@@ -11,6 +11,7 @@ import click
 
 from fatektool.cli.frame_view import explanation_document, field_lines
 from fatektool.cli.options import PROTOCOLS, voice_options
+from fatektool.cli.pairs import together
 from fatektool.errors import DataError, UsageError
 from fatektool.program.files import read_bounded
 from fatektool.protocol.explain import Explainer, Explanation, Role
@@ -50,6 +51,7 @@ def decode_command(
     They are given as HEX, or come from a trace FILE (.ndjson, .pcap).
     """
     records, damage = _gathered(frames)
+    together("role", holds=all(not record.time for record in records), needs="frames given as hex")
     protocol = protocol or _protocol_of(records)
     explainer = EXPLAINERS[protocol]()
     found = list(_explained(explainer, records, _ROLES.get(role or "", Role.EITHER)))

@@ -14,6 +14,7 @@ from fatektool.cli.alarms import Alarms, alarm_options
 from fatektool.cli.check import Plan, check_one
 from fatektool.cli.fleet_run import Orders, fleet_options, run_fleet
 from fatektool.cli.options import PATH, connection_of
+from fatektool.cli.pairs import apart
 from fatektool.cli.plugin import PluginCommand, plugin_line
 from fatektool.errors import UsageError
 from fatektool.jobs.check import Checked, State, parse_age, worst
@@ -55,6 +56,7 @@ def check_command(
     """
     if max_age is not None and backups is None:
         raise UsageError("--max-age goes with --backups DIR")
+    apart("on_change", "no_reference")
     age_s = None if max_age is None else parse_age(max_age)
 
     def work(entry: PlcEntry, turn: Turn[Done]) -> Done:

@@ -26,6 +26,7 @@ from fatektool.cli.image_words import warn_of_image
 from fatektool.cli.inspect import backup_rows
 from fatektool.cli.options import PATH, Seconds, voice_options
 from fatektool.cli.output import table
+from fatektool.cli.pairs import together
 from fatektool.cli.report import report_option
 from fatektool.errors import PushFailed, UsageError
 from fatektool.history.checking import check
@@ -190,6 +191,7 @@ def export_command(which: str, file: Path, folder: Path, voice: Voice, *, force:
     """Write a PLC's backup, of now or of a revision, to FILE for 'restore'; - is standard output."""
     name, revision = _parted(which)
     history = History(folder)
+    together("force", holds=file != STDOUT, needs="a file")
     if file == STDOUT:
         sys.stdout.buffer.write(history.show(name, revision).data)
         sys.stdout.buffer.flush()

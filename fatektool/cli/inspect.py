@@ -11,6 +11,7 @@ from fatektool.cli.documents import inspect_document
 from fatektool.cli.image_words import warn_of_image
 from fatektool.cli.options import PATH, voice_options
 from fatektool.cli.output import Voice, table
+from fatektool.cli.pairs import together
 from fatektool.program.archive import load_backup
 from fatektool.program.files import write_whole
 
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 @voice_options
 def inspect_command(file: Path, voice: Voice, *, raw: Path | None, force: bool) -> None:
     """Show and check what the backup FILE holds. Needs no PLC."""
+    together("force", holds=raw is not None, needs="--raw")
     require_raw_name(raw, file)
     found = load_backup(file)
     warn_of_image(found.program, voice)

@@ -11,6 +11,7 @@ import click
 
 from fatektool.cli.inventory_file import inventory_option, inventory_path, open_inventory
 from fatektool.cli.options import PATH, PROTOCOLS, voice_options
+from fatektool.cli.pairs import apart
 from fatektool.errors import DataError, FatektoolError, UsageError
 from fatektool.inventory.add import with_plc
 from fatektool.inventory.entries import Fault
@@ -157,8 +158,9 @@ def add_command(
     options = {"station": station, "protocol": protocol, "baud": baud, "format": line_format}
     given = {key: value for key, value in options.items() if value is not None}
     if scan is not None:
-        if target is not None or given:
-            raise UsageError("--from says where the PLCs are: expected no other option beside --tag")
+        apart(
+            "scan", "target", "station", "protocol", "baud", "line_format", why="the scan says where PLCs are"
+        )
         wanted = _scanned(scan, name)
     else:
         if target is None:

@@ -13,6 +13,7 @@ from fatektool.cli.link_host import host_document
 from fatektool.cli.link_ports import modem_rows
 from fatektool.cli.options import PATH, Connection, connection_options, yes_option
 from fatektool.cli.output import Voice, can_ask, table
+from fatektool.cli.pairs import apart
 from fatektool.cli.read import warn_of
 from fatektool.cli.way_back import same_again, save_safety
 from fatektool.errors import PlcError, RestoreIncomplete, UsageError
@@ -104,8 +105,7 @@ def set_command(
     fails on the way (exit 6), the same command finishes it. A call through that modem itself may end when its
     settings change.
     """
-    if no_safety_snapshot and safety_dir is not None:
-        raise UsageError("--no-safety-snapshot does not go with --safety-dir")
+    apart("no_safety_snapshot", "safety_dir")
     folder = None if no_safety_snapshot else require_folder(safety_dir or Path())
     settings = ModemSettings(
         number, on, pulse, rings, dial_control, None if profile is None else int(profile == "user")

@@ -13,6 +13,7 @@ from fatektool.cli.link_host import host_document
 from fatektool.cli.link_table_view import fault_documents, table_lines
 from fatektool.cli.options import PATH, Connection, connection_options, yes_option
 from fatektool.cli.output import Voice, can_ask
+from fatektool.cli.pairs import apart
 from fatektool.cli.read import warn_of
 from fatektool.cli.way_back import same_again, save_safety
 from fatektool.errors import DataError, PlcError, RestoreIncomplete, UsageError
@@ -66,8 +67,7 @@ def write_command(
     that are configured as ROR take nothing. If the line fails on the way (exit 6), the same command finishes
     it.
     """
-    if no_safety_snapshot and safety_dir is not None:
-        raise UsageError("--no-safety-snapshot does not go with --safety-dir")
+    apart("no_safety_snapshot", "safety_dir")
     start = parse_start(sr, "SR")
     table = load_table(read_bounded(file, MAX_TOML), str(file))
     folder = None if no_safety_snapshot else require_folder(safety_dir or file.parent)

@@ -10,6 +10,7 @@ from fatektool.cli import INTERRUPTED
 from fatektool.cli.line_documents import loopback_document
 from fatektool.cli.loopback_view import LiveFigures, lines
 from fatektool.cli.options import Connection, Seconds, Several, connection_options
+from fatektool.cli.pairs import apart, together
 from fatektool.cli.report import report_option, write_report
 from fatektool.jobs.diagnosis import diagnose
 from fatektool.jobs.finding import Case
@@ -94,6 +95,8 @@ def loopback_command(
     program that sends back what it gets (CLINK, MD2). Then no station and no protocol count.
     """
     frame = None if raw is None else RawFrame.parse(raw)
+    apart("raw", "station", "protocol", why="texts in a frame of their own have neither")
+    together("seed", holds=Pattern.RANDOM.value in patterns, needs="--pattern random")
     plan = LoopbackPlan(
         count=DEFAULT_COUNT if count is None and duration is None else count,
         duration_s=duration,

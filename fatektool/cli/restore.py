@@ -12,6 +12,7 @@ from fatektool.cli.documents import restore_document
 from fatektool.cli.image_words import warn_of_image
 from fatektool.cli.options import PATH, Connection, connection_options, yes_option
 from fatektool.cli.output import Bar, Voice, can_ask, table
+from fatektool.cli.pairs import apart
 from fatektool.errors import RestoreIncomplete, UsageError
 from fatektool.jobs.restore import (
     RestoreOptions,
@@ -67,8 +68,7 @@ def restore_command(
     FILE and PLC are checked, the old program is saved as a safety backup, all pages are written and read
     back. A restore that was interrupted is finished by the same command.
     """
-    if no_safety_backup and (rollback or safety_dir):
-        raise UsageError("--no-safety-backup does not go with --rollback or --safety-dir")
+    apart("no_safety_backup", "rollback", "safety_dir")
     backup = load_backup(file)
     folder = None if no_safety_backup else require_folder(safety_dir or file.parent)
     options = RestoreOptions(stop, run, changed_only, rollback, any_header, single_pass)

@@ -10,6 +10,7 @@ import click
 from fatektool.cli import INTERRUPTED
 from fatektool.cli.line_documents import scan_document, station_document
 from fatektool.cli.options import PROTOCOLS, Connection, Several, connection_options
+from fatektool.cli.pairs import apart, together
 from fatektool.errors import UsageError
 from fatektool.jobs.scan import ScanResult, Setting, scan
 from fatektool.jobs.times import utc
@@ -89,6 +90,10 @@ def scan_command(
     A silent station costs the wire time and
     --timeout: a shorter one makes a scan faster, and deaf to slow PLCs. Exit 1 if nobody answers.
     """
+    together("station", holds=False, needs="one PLC; a scan asks those of --stations")
+    apart("baud", "bauds")
+    apart("line_format", "formats")
+    apart("protocol", "protocols")
     settings = _settings(connection, bauds, formats, protocols)
     with ExitStack() as stack:
         transport = connection.open_line(voice, stack)

@@ -11,6 +11,7 @@ import click
 
 from fatektool.cli.options import PATH, voice_options
 from fatektool.cli.output import print_json
+from fatektool.cli.pairs import apart, given, together
 from fatektool.errors import UsageError
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.faults import PROBABILITY_KINDS
@@ -147,25 +148,16 @@ def simulate_command(
         finally:
             tell_unknown(recorded, voice)
         return
+    _require_effects(protocol, baud, fault)
     if strict_baud and (baud is None or not pty):
         raise UsageError("--strict-baud is for a --pty with a --baud")
     if replay_speed is not None:
         raise UsageError("--replay-speed is for a recorded PLC", hint="name the recording with --replay")
-    wanted: dict[str, Any] = {}
-    if program is not None:
-        from fatektool.program.archive import load_backup
-
-        image = load_backup(program).program
-        if ladder_words not in {None, image.ladder_words}:
-            raise UsageError(f"--ladder-words {ladder_words}: the program has {image.ladder_words}")
-        wanted = {"program": image.pages, "ladder_words": image.ladder_words}
-    elif ladder_words is not None:
-        wanted = {"ladder_words": ladder_words}
     simulation = build_simulation(
         station or None,
         model,
         protocol=protocol,
-        **wanted,
+        **_program(program, ladder_words, state, voice),
         program_seed=program_seed,
         program_swapped=swap_program,
         program_commands=not no_program_commands,
@@ -185,6 +177,32 @@ def simulate_command(
         _serve(simulation, voice, doors, pty, baud if strict_baud else None)
     finally:
         simulation.save_if_changed()
+
+
+def _program(
+    program: Path | None, ladder_words: int | None, state: Path | None, voice: Voice
+) -> dict[str, Any]:
+    """What the options say of the program in the PLCs."""
+    if state is not None and state.exists():
+        for name in ("program", "program_seed", "swap_program", "ladder_words"):
+            if option := given(name):
+                voice.warn(f"{option} fills a new file only: what {state} holds counts")
+    if program is None:
+        return {} if ladder_words is None else {"ladder_words": ladder_words}
+    from fatektool.program.archive import load_backup
+
+    image = load_backup(program).program
+    if ladder_words not in {None, image.ladder_words}:
+        raise UsageError(f"--ladder-words {ladder_words}: the program has {image.ladder_words}")
+    return {"program": image.pages, "ladder_words": image.ladder_words}
+
+
+def _require_effects(protocol: str, baud: int | None, faults: tuple[str, ...]) -> None:
+    """Refuse what would have no effect."""
+    apart("program", "program_seed", "swap_program", why="they are of the demonstration program")
+    together("line_format", holds=baud is not None, needs="--baud, whose pace it is")
+    together("seed", holds=bool(faults), needs="--fault")
+    together("no_error_character", holds=protocol == "facon", needs="--protocol facon")
 
 
 def _serve(

@@ -53,7 +53,7 @@ def either_format(function: F) -> F:
             raise UsageError(
                 f"--format {lines[0]}: expected one of {', '.join(FORMATS)}, or a line's format such as 8N1"
             )
-        form = forms[0].lower() if forms else "json"
+        form = forms[0].lower() if forms else None
         return function(*args, form=form, line_format=lines[0] if lines else None, **rest)
 
     return with_formats  # type: ignore[return-value]  # click's decorators hand back what they get
@@ -96,7 +96,7 @@ def snapshot_command() -> None:
     "--output",
     type=str,
     metavar="FILE|DIR/",
-    help="Into FILE, which is replaced, or into a dated file in DIR; else, and for -, stdout.",
+    help="Into FILE, or into a dated file in DIR; else, and for -, stdout.",
 )
 @click.option("--append", type=PATH, metavar="FILE.ndjson", help="As one line at the end of FILE.")
 @click.option(
@@ -104,7 +104,8 @@ def snapshot_command() -> None:
     "formats",
     multiple=True,
     metavar="json|ndjson|csv|influx|prometheus",
-    help="How the snapshot is written, by default json; the line's format, such as 8N1, may stand here too.",
+    help="How the snapshot is written, by default as FILE's ending says, else json; "
+    "the line's format, such as 8N1, may stand here too.",
 )
 @click.option(
     "--keep", metavar="N|DAYSd", help="Keep N snapshots, or those of so many days, in DIR or FILE.ndjson."
@@ -123,15 +124,17 @@ def take_command(
     whole: bool,
     output: str | None,
     append: Path | None,
-    form: str,
+    form: str | None,
     keep: str | None,
     report: Path | None,
 ) -> int:
     """Read data from the PLC."""
     items = selected(elements, spec, groups, whole=whole).items
-    output = None if output == "-" else output
     kept = None if keep is None else Keep.parse(keep)
+    to_stdout = output == "-" or (output is None and append is None)
+    output = None if output == "-" else output
     folder = _folder(output)
+    form = _form(form, voice, output, append, to_stdout=to_stdout)
     if kept is not None and folder is None and append is None:
         raise UsageError("--keep goes with -o DIR/ or --append FILE")
     if report is not None and folder is not None and form not in _SERIES:
@@ -151,12 +154,37 @@ def take_command(
         append_line(append, as_ndjson(snapshot), kept, wait_s=wait_s, waiting=voice.say)
     if voice.json:
         click.echo(as_json(snapshot), nl=False)
-    elif output is None and append is None:
+    elif to_stdout:
         click.echo(text, nl=False)
     if report is not None:
         write_snapshot_report(report, snapshot, append or folder)
     warn_of(snapshot.errors, voice, snapshot.not_asked)
     return PlcError.exit_code if snapshot.errors else 0
+
+
+def _form(form: str | None, voice: Voice, output: str | None, append: Path | None, *, to_stdout: bool) -> str:
+    """How the snapshot is written: as ``--format`` says, else as the name of FILE does, else as JSON.
+
+    Raises:
+        UsageError: a format that nothing would be written in.
+    """
+    suffix = "" if output is None else Path(output).suffix.lower().removeprefix(".")
+    of_name = next((name for name, ending in SUFFIXES.items() if ending == suffix), None)
+    if append is not None:
+        ending = append.suffix.lower().removeprefix(".")
+        if ending in SUFFIXES.values() and ending not in _SERIES:
+            raise UsageError(f"--append {append}: lines of NDJSON", hint="expected a name such as x.ndjson")
+        if form not in {None, "ndjson"} and output is None and not to_stdout:
+            raise UsageError(
+                f"--append writes NDJSON, which does not go with --format {form}",
+                hint=f"leave out --format, or add -o FILE for {form}",
+            )
+    if form not in {None, "json"} and voice.json and to_stdout:
+        raise UsageError(
+            f"--json does not go with --format {form} on standard output",
+            hint=f"leave one out, or add -o FILE for {form}",
+        )
+    return form or of_name or "json"
 
 
 def selected(elements: tuple[str, ...], spec: Path | None, groups: tuple[str, ...], *, whole: bool) -> Spec:

@@ -13,6 +13,7 @@ from fatektool.cli.documents import where
 from fatektool.cli.modbus_map import modbus_map_option
 from fatektool.cli.options import PATH, Connection, connection_options, yes_option
 from fatektool.cli.output import Voice, can_ask
+from fatektool.cli.pairs import apart
 from fatektool.cli.read import shown, warn_of
 from fatektool.errors import PlcError, RestoreIncomplete, UsageError
 from fatektool.jobs.registers import named
@@ -62,8 +63,7 @@ def apply_command(
     back. Inputs (X) are not written. What the PLC does not take is named (exit 4). If the line fails on the
     way (exit 6), the same command finishes it.
     """
-    if no_safety_snapshot and safety_dir is not None:
-        raise UsageError("--no-safety-snapshot does not go with --safety-dir")
+    apart("no_safety_snapshot", "safety_dir")
     snapshot = load_snapshot(file, voice.warn)
     folder = None if no_safety_snapshot else require_folder(safety_dir or file.parent)
     safety: str | None = None

@@ -19,7 +19,7 @@ _COLUMNS: Final = ("time", "target", "station", "key", "element", "type", "raw",
 
 def as_json(snapshot: Snapshot) -> str:
     """One document, indented."""
-    return json.dumps(snapshot.document(), indent=1, allow_nan=False) + "\n"
+    return json.dumps(snapshot.document(), indent=2, allow_nan=False) + "\n"
 
 
 def as_ndjson(snapshot: Snapshot) -> str:

@@ -142,7 +142,7 @@ def test_a_port_in_use(cli: Cli) -> None:
         (2, "--tcp :0 --station 0", "0 is not in the range 1<=x<=254"),
         (2, "--tcp :0 --set nope", "'nope' is not one of"),
         (2, "--tcp :0 --scan-ms nan", "scan"),
-        (2, "--tcp :0 --format 9", "such as 7E1 or 8N1"),
+        (2, "--tcp :0 --baud 9600 --format 9", "such as 7E1 or 8N1"),
         (2, "--tcp :0 --program old.json --ladder-words 5", "the program has 400"),
         (2, "--tcp :0 --program no.json", "cannot read no.json"),
         (5, "--tcp :0 --program plc.state", "expected schema"),

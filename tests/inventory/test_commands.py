@@ -117,7 +117,7 @@ def umask() -> int:
         ("x -p tcp://", 2, "'x' cannot be added: plc.x: target 'tcp://': expected"),
         ("x -p sim: --baud 9", 2, "'x' cannot be added: plc.x: baud: expected a whole number of 50"),
         ("x", 2, "no PLC named; give --port TARGET, or --from FILE"),
-        ("x --from s.json -p sim:", 2, "--from says where the PLCs are"),
+        ("x --from s.json -p sim:", 2, "--from does not go with --port"),
         ("x --from no.json", 2, "cannot read no.json"),
         ("x --from fatek.toml", 5, "fatek.toml: not what 'fatektool scan --json' prints"),
         ("x --from other.json", 5, "other.json: expected schema 'fatektool.scan/1', got 'x'"),
