@@ -32,6 +32,8 @@ FREE = {
     "restore": "--stop --run --changed-only --dry-run --single-pass --any-header --yes",
     "inspect": "--raw",
     "diff": "--report",
+    "listing": "--network --words --comments --encoding --report",
+    "xref": "--comments --encoding",
     "status": "--brief",
     "run": "--broadcast --yes",
     "stop": "--broadcast --yes",
