@@ -23,6 +23,10 @@ if TYPE_CHECKING:
     from fatektool.jobs.scan import Station
 
 
+_OF_UNITS = "modbus-tcp"
+_UNITS = {0, 255}
+
+
 class Stations(click.ParamType):  # type: ignore[type-arg]  # a generic in the newest click only
     """``1-254``, ``1,5,7-9``."""
 
@@ -37,7 +41,7 @@ class Stations(click.ParamType):  # type: ignore[type-arg]  # a generic in the n
             if not all(end.isascii() and end.isdigit() and 0 <= int(end[:4]) <= 255 for end in ends):
                 self.fail(
                     f"{part.strip()!r}: expected stations from 1 to 254, such as 1-254 or 1,5,7-9; "
-                    "over modbus-tcp 0 and 255 too",
+                    f"over {_OF_UNITS} 0 and 255 too",
                     param,
                     ctx,
                 )
@@ -95,6 +99,11 @@ def scan_command(
     apart("line_format", "formats")
     apart("protocol", "protocols")
     settings = _settings(connection, bauds, formats, protocols)
+    for station in _UNITS.intersection(stations):
+        if not any(station in setting.codec.stations for setting in settings):
+            raise UsageError(
+                f"station {station}: expected stations from 1 to 254; it is a unit of {_OF_UNITS}"
+            )
     with ExitStack() as stack:
         transport = connection.open_line(voice, stack)
         serial = transport.line is not None

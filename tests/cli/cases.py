@@ -154,7 +154,7 @@ ERRORS = r"""
 2 loopback -p PLC --count 0
     0 is not in the range
 2 scan -p PLC --stations 0-3
-    '0-3': expected stations from 1 to 254
+    station 0: expected stations from 1 to 254; it is a unit of modbus-tcp
 2 scan -p PLC --stations 9-3
     expected the lower station first
 2 scan -p PLC --bauds 9600,19200
