@@ -153,16 +153,20 @@ def test_one_that_is_ahead(book: Book, nas: Path, tmp_path: Path) -> None:
         ("http://user:secret@127.0.0.1:1/x", "unable to access 'http://127.0.0.1:1/x/'", "refused"),
         ("work", "branch is currently checked out", "it has a work tree, expected a bare repository"),
         ("work/.git", "branch is currently checked out", "it has a work tree, expected a bare repository"),
-        (".", "does not appear to be a git repository", "NotGitRepository"),
+        (".", "does not appear to be a git repository; the history", "NotGitRepository"),
+        ("", "it names no place; the history here is whole", "it names no place"),
+        ("a:b", "nossh: ", "FileNotFoundError"),
     ],
 )
 @pytest.mark.usefixtures("nas")
 def test_no_place_to_push_to(book: Book, remote: str, by_git: str, by_dulwich: str, by: str) -> None:
     git(book.folder.parent, "init", "--quiet", "--initial-branch=main", "work")
-    with pytest.raises(PushFailed) as raised:
-        push(book.folder, remote, timeout_s=5)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("GIT_SSH_COMMAND", "nossh")
+        with pytest.raises(PushFailed) as raised:
+            push(book.folder, remote, timeout_s=5)
     said = str(raised.value)
-    assert said.startswith(f"could not push to {remote.replace('user:secret@', '')}: ")
+    assert said.startswith("could not push to " + (remote.replace("user:secret@", "") or "''") + ": ")
     assert (by_git if by == "git" else by_dulwich) in said
     assert "secret" not in said
     assert raised.value.exit_code == 3
@@ -213,7 +217,7 @@ def test_by_ssh(book: Book, nas: Path, monkeypatch: pytest.MonkeyPatch, by: str,
     script(ssh, "#!/bin/sh\necho 'Permission denied (publickey).' >&2\nexit 255\n")
     with pytest.raises(PushFailed, match=r"could not push to ssh://nas\.invalid") as raised:
         push(book.folder, f"ssh://nas.invalid{nas}")
-    assert "Permission denied (publickey)." in str(raised.value) or by == "dulwich"
+    assert "Permission denied (publickey)" in str(raised.value) or by == "dulwich"
 
 
 class Quiet(WSGIRequestHandler):

@@ -12,7 +12,7 @@ from __future__ import annotations
 import shutil
 from typing import TYPE_CHECKING, Final
 
-from fatektool.history.push.outcome import Pushed
+from fatektool.history.push.outcome import Pushed, failed
 from fatektool.history.repository import Repository
 
 if TYPE_CHECKING:
@@ -37,6 +37,8 @@ def push(folder: Path, remote: str, *, timeout_s: float = _TIMEOUT_S) -> Pushed:
         UsageError: there is no history here.
         DataError: the history here is damaged.
     """
+    if not remote:
+        raise failed("''", "it names no place", "name a folder, ssh://HOST/PATH, HOST:PATH or https://…")
     program = shutil.which("git")
     with Repository(folder) as repository:
         if program is not None:

@@ -182,7 +182,7 @@ def _ssh(repository: Repository, timeout_s: float) -> str:
 def _local(place: str, folder: Path) -> str:
     """A folder with a bare repository without hooks: one with a work tree would have an old one then."""
     if not folder.is_dir():
-        raise failed(place, "there is no such folder", "make a bare repository there: 'git init --bare' does")
+        raise failed(place, "there is no such folder", f"make one: git init --bare {shlex.quote(place)}")
     with Repo(str(folder)) as found:  # raises what its message names, if it is none
         if not is_bare(found):
             raise _failed(place, "it has a work tree, expected a bare repository ('git init --bare')")

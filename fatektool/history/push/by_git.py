@@ -57,6 +57,8 @@ _ANOTHER_WAY: Final = re.compile(r"\[rejected\] \((fetch first|non-fast-forward)
 _UNSAID: Final = re.compile(
     r"(remote: )?(Enumerating|Counting|Compressing|Writing|Resolving|Unpacking|Checking) [\w ]+:"
     r"|(remote: )?Total \d|Delta compression|hint:|To |Done$|remote: *$"
+    r"|fatal: Could not read from remote repository"
+    r"|Please make sure you have the correct access|and the repository exists\.$"
 )
 _MOST: Final = 400
 
@@ -95,7 +97,7 @@ class _Push:
         for place, path in zip(places, local, strict=True):
             if path is not None and not path.is_dir():
                 raise failed(
-                    place, "there is no such folder", f"make it: git init --bare {shlex.quote(place)}"
+                    place, "there is no such folder", f"make one: git init --bare {shlex.quote(place)}"
                 )
         if tip is None:
             return Pushed(shown, None, sent=False)
@@ -103,9 +105,9 @@ class _Push:
             remote = str(local[0])
         self._let_ssh_ask_nothing()
         words = ["push", "--porcelain", "--progress", "--", remote, f"{tip}:{self.branch}"]
-        ended = self._run(shown, *settings, *words, silence_s=_SILENCES * self.timeout_s)
+        ended = self._run(remote, *settings, *words, silence_s=_SILENCES * self.timeout_s)
         if ended.code != 0:
-            raise self._error(shown, ended)
+            raise self._error(shown, remote, ended)
         for path in local:
             if path is not None:
                 let_head_name(path, Ref(self.branch.encode()))
@@ -129,32 +131,32 @@ class _Push:
                 f"ssh -o BatchMode=yes -o ConnectTimeout={seconds} -o ServerAliveInterval={seconds}"
             )
 
-    def _run(self, shown: str, *words: str, silence_s: float = 60.0) -> Ended:
+    def _run(self, remote: str, *words: str, silence_s: float = 60.0) -> Ended:
         try:
             ended = run_bounded((*self.git, *words), self.environment, silence_s)
         except OSError as error:
             raise failed(
-                shown, f"git cannot be started: {error.strerror}", "see that 'git --version' works"
+                remote, f"git cannot be started: {error.strerror}", "see that 'git --version' works"
             ) from error
         if ended.code is None:
             said = _words(ended.err)
             raise failed(
-                shown,
+                remote,
                 f"nothing was heard of git for {silence_s:.0f} s" + (f" after: {said}" if said else ""),
-                self._by_hand(shown),
+                self._by_hand(remote),
             )
         return ended
 
-    def _error(self, shown: str, ended: Ended) -> PushFailed:
+    def _error(self, shown: str, remote: str, ended: Ended) -> PushFailed:
         refused = [summary for flag, summary in _results(ended.out) if flag == "!"]
         if any(map(_ANOTHER_WAY.search, refused)):
             return gone_another_way(shown, self.branch, self.folder)
         reasons = [*refused, _words(ended.err)] if refused else [_words(ended.err)]
         reason = "; ".join(filter(None, reasons)) or f"git ended with {ended.code}"
-        return failed(shown, reason, self._by_hand(shown))
+        return failed(shown, reason, self._by_hand(remote))
 
-    def _by_hand(self, shown: str) -> str:
-        words = ["git", "-C", str(self.folder), "push", shown.partition(", ")[0], self.branch]
+    def _by_hand(self, remote: str) -> str:
+        words = ["git", "-C", str(self.folder), "push", without_secrets(remote), self.branch]
         return f"to see what git wants: {shlex.join(words)}"
 
 
@@ -170,4 +172,4 @@ def _words(err: str) -> str:
     """What git, ssh and the other side say, without progress and advice, in one line."""
     lines = [line.strip() for line in re.split(r"[\r\n]+", err)]
     said = [re.sub(r"\x1b\[[0-9;]*[A-Za-z]", "", line) for line in lines if line and not _UNSAID.match(line)]
-    return " / ".join(said)[:_MOST]
+    return " / ".join(said).rstrip(".")[:_MOST]

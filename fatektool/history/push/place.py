@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 URL: Final = re.compile(r"([a-z][a-z0-9+.-]*)://", re.ASCII | re.IGNORECASE)
 _HELPER: Final = re.compile(r"[a-z0-9-]+::", re.ASCII | re.IGNORECASE)  # git's own: ext::…
-_SCP: Final = re.compile(r"[^/\\:]{2,}:.+", re.DOTALL)  # host:path; one letter would be a drive
+_SCP: Final = re.compile(r"[^/\\:]{2,}:" if os.name == "nt" else "[^/:]+:")  # host:path; C: is a drive there
 
 
 def folder_of(place: str, base: Path) -> Path | None:
@@ -34,7 +34,7 @@ def folder_of(place: str, base: Path) -> Path | None:
             return None
         return Path(url2pathname(urlsplit(place).path))
     path = Path(os.path.abspath(base / place))  # noqa: PTH100  # resolve() would follow links
-    if not path.exists() and (_SCP.fullmatch(place) or _HELPER.match(place)):
+    if not path.exists() and (_SCP.match(place) or _HELPER.match(place)):
         return None
     return path
 
