@@ -6,10 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
 
+from fatektool.errors import UsageError
 from fatektool.jobs.command_words import FORMS, MODBUS_FUNCTIONS, NAMES, parse_command
 from fatektool.protocol.commands import Command
-from fatektool.protocol.frames import answer_frame, frame
+from fatektool.protocol.frames import answer_frame, codec_of, frame
 from tests.protocol import mseries_vectors, vectors
 from tests.protocol.strategies import exchanges
 
@@ -187,7 +189,7 @@ def test_every_command_has_a_form_and_a_name() -> None:
         ("46 --data 30 --error A", "--error and --data do not go together"),
         ("46 --data 3", "expected hex digits in pairs"),
         ("46 --error zz", "expected a code in hex, such as A"),
-        ("46 R1 -s 255", "station: expected 0 to 254, got 255"),
+        ("03 R1 -s 248 --protocol modbus-rtu", "station: expected 0 to 247, got 248"),
         ("46 R1 --number 3", "--number is for modbus-tcp"),
         ("04 R12 3 --protocol modbus-rtu", "asks this by 03, not 04; give 03, or the data field of 04"),
         ("03 R12 3", "in facon this is 46, not 03"),
@@ -204,3 +206,29 @@ def test_what_cannot_be_said(cli: Cli, words: str, said: str) -> None:
     done = cli("encode", *words.split())
     assert (done.code, done.out) == (2, ""), done
     assert re.search(said, done.err), done.err
+
+
+@given(
+    st.sampled_from([*NAMES, "40", "46", "48", "03", "10", "5A", "FF", "0x4", "4h"]),
+    st.lists(st.text(st.sampled_from("RDXYWM0123456789=:,-. onfi\x00é"), max_size=12), max_size=3),
+    st.booleans(),
+    st.sampled_from(["facon", "mseries", "modbus-rtu", "modbus-tcp"]),
+)
+def test_any_words_are_a_frame_or_refused(
+    command: str, words: list[str], answer: bool, protocol: str
+) -> None:
+    """Whatever stands there: bytes that are one frame, or what was expected."""
+    try:
+        spoken = parse_command(command, *words, answer=answer)
+        raw = (
+            answer_frame(spoken.request, spoken.answer, 1, protocol)
+            if answer
+            else frame(spoken.request, 1, protocol)
+        )
+    except UsageError:
+        return
+    decoder = codec_of(protocol).decoder()
+    decoder.feed(raw)
+    found = decoder.next_frame()
+    assert found is not None
+    assert found.raw == raw
