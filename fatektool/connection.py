@@ -9,14 +9,16 @@ from __future__ import annotations
 from contextlib import ExitStack
 from functools import partial
 from math import inf
+from time import sleep
 from typing import TYPE_CHECKING, Final, Literal
 
 from fatektool.client import Plc
-from fatektool.errors import PlcError, PlcRefused, UsageError
+from fatektool.errors import UsageError
 from fatektool.link import Link
 from fatektool.protocol.codec import require_commands, require_station
 from fatektool.protocol.codecs import Codecs
 from fatektool.transport.base import LineSettings, no_note
+from fatektool.transport.patience import Patience, PatientTransport
 from fatektool.transport.target import Target, TargetKind
 
 if TYPE_CHECKING:
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
     from fatektool.protocol.codec import Codec
     from fatektool.protocol.commands import Command
     from fatektool.protocol.modbus_map import ModbusMap
+    from fatektool.shared_line import SharedLine
     from fatektool.transport.base import Transport
     from fatektool.transport.lent import LentTransport
     from fatektool.transport.limit import Limit
@@ -33,6 +36,7 @@ if TYPE_CHECKING:
 
 CODECS: Mapping[str, Codec] = Codecs()
 _LAST_STATION: Final = 254
+_ONE_TRY: Final = Patience()
 
 
 def _to_nobody(_: object) -> None:
@@ -55,55 +59,6 @@ def usual_format(protocol: str) -> str:
     return f"{codec_named(protocol).data_bits or 8}E1"
 
 
-def mapped(codec: Codec, modbus_map: ModbusMap | None) -> Codec:
-    """The same protocol over another Modbus map; None for the standard one.
-
-    Raises:
-        UsageError: it has none.
-    """
-    from fatektool.protocol.modbus import ModbusCodec
-    from fatektool.protocol.modbus_map import STANDARD
-
-    if not isinstance(codec, ModbusCodec):
-        raise UsageError(f"a Modbus map is for a Modbus protocol, not for {codec.name}")
-    return codec.mapped(STANDARD if modbus_map is None else modbus_map)
-
-
-def map_in_plc(link: Link) -> ModbusMap:
-    """The map that the PLC's own R3968 to R3980 describe, read over Modbus.
-
-    With R3968 = A55AH the standard references are gone, R3968's too, unless the map's own range holds them:
-    then, and only then, what is read there describes just that.
-
-    Raises:
-        PlcError: they cannot be read, or another map is in force.
-        LineError: no answer.
-    """
-    from fatektool.protocol.commands import ReadRegisters
-    from fatektool.protocol.elements import Element
-    from fatektool.protocol.modbus_map import FIRST_REGISTER, REGISTER_COUNT, STANDARD_NAME, map_of_registers
-
-    first = Element("R", FIRST_REGISTER)
-    hint = (
-        "'fatektool snapshot R3968-R3980 -o map.json' on a port that speaks FACON, then --modbus-map map.json"
-    )
-    try:
-        words: tuple[int, ...] = link.ask(ReadRegisters(first, REGISTER_COUNT))
-        found = map_of_registers(words)
-    except PlcRefused as error:
-        raise PlcError(f"--modbus-map custom: R3968 cannot be read: {error.message}", hint=hint) from error
-    try:
-        here = found.place(first, REGISTER_COUNT).offset == FIRST_REGISTER
-    except UsageError:
-        here = False
-    if found.name == STANDARD_NAME or not here:
-        raise PlcError(
-            "--modbus-map custom: where R3968 would be, the PLC does not show a map of its own in force",
-            hint=f"leave the option out; if the PLC has one, {hint}",
-        )
-    return found
-
-
 def connect(
     target: str,
     *,
@@ -121,6 +76,7 @@ def connect(
     modbus_map: ModbusMap | Literal["custom"] | None = None,
     low_latency: bool = True,
     lend: bool = False,
+    shared: SharedLine | None = None,
     note: Callable[[str], None] = no_note,
     waiting: Callable[[str], None] = no_note,
     warn: Callable[[str], None] = no_note,
@@ -147,6 +103,7 @@ def connect(
             the PLC's own.
         low_latency: ask the driver of a serial port to hand on at once what it receives, on Linux.
         lend: True for who lets others have the line between two rounds, with ``Plc.lend``.
+        shared: keeps the line open for the next PLC on it; not with ``trace``.
         note: is told what a curious user may want to know.
         waiting: is told, at once, who has the line, if it must be waited for.
         warn: is told once that answers come later than ``timeout_s``.
@@ -159,32 +116,33 @@ def connect(
     require_commands(codec, *needs)
     require_station(codec, station)
     if modbus_map is not None:
-        codec = mapped(codec, None if modbus_map == "custom" else modbus_map)
+        codec = _mapped(codec, None if modbus_map == "custom" else modbus_map)
     if not 0 < timeout_s < inf or retries < 0:
         raise UsageError(f"expected a timeout above 0 and retries from 0, got {timeout_s:g} and {retries}")
     line = LineSettings(baud, usual_format(protocol) if format is None else format)
     stack = ExitStack()
     locks: list[PortLock] = []
     lines: list[LentTransport] = []
+    patience = Patience(timeout_s, retries, sleep if limit is None else limit.pause, note)
+    opened = partial(
+        open_line,
+        target,
+        line=line,
+        protocol=protocol,
+        station=station,
+        lock_wait_s=lock_wait_s,
+        trace=trace,
+        low_latency=low_latency,
+        note=note,
+        waiting=waiting,
+        patience=patience,
+    )
     try:
-        transport = open_line(
-            target,
-            stack,
-            line,
-            protocol=protocol,
-            station=station,
-            lock_wait_s=lock_wait_s,
-            trace=trace,
-            low_latency=low_latency,
-            note=note,
-            waiting=waiting,
-            on_lock=locks.append,
-            on_lent=lines.append if lend else None,
-        )
-        if limit is not None:
-            from fatektool.transport.limit import LimitedTransport
-
-            transport = LimitedTransport(transport, limit)
+        if shared is None or trace is not None or target.startswith("sim:"):
+            transport = opened(stack, locks.append, lines.append if lend else None)
+        else:
+            transport, locks = shared.take(target, line, opened), shared.locks
+        transport = _with_patience(transport, target, patience, limit)
         link = Link(
             transport,
             codec,
@@ -198,14 +156,45 @@ def connect(
         )
         for lock in locks:
             _hand_over_doubt(lock, link)
+        if shared is not None:
+            stack.callback(_end_turn, shared, link)
         for lent in lines:
             lent.on_lock = partial(_hand_over_doubt, link=link)
         if modbus_map == "custom":
-            link.codec = mapped(codec, map_in_plc(link))
+            _use_own_map(link)
     except BaseException:
         stack.close()
+        if shared is not None:
+            shared.close()
         raise
     return Plc(link, target, stack, lines[0] if lines else None)
+
+
+def _mapped(codec: Codec, modbus_map: ModbusMap | None) -> Codec:
+    from fatektool.plc_map import mapped
+
+    return mapped(codec, modbus_map)
+
+
+def _use_own_map(link: Link) -> None:
+    from fatektool.plc_map import map_in_plc
+
+    link.codec = _mapped(link.codec, map_in_plc(link))
+
+
+def _with_patience(transport: Transport, target: str, patience: Patience, limit: Limit | None) -> Transport:
+    """The line within a limit of time; a connection that fails is made anew after a pause, within it too."""
+    if limit is not None:
+        from fatektool.transport.limit import LimitedTransport
+
+        transport = LimitedTransport(transport, limit)
+    return PatientTransport(transport, patience) if "://" in target else transport
+
+
+def _end_turn(shared: SharedLine, link: Link) -> None:
+    """Leave a line open that is in order; close one on which an answer may be on its way."""
+    if link.hearing.doubt:
+        shared.close()
 
 
 def _hand_over_doubt(lock: PortLock, link: Link) -> None:
@@ -223,8 +212,10 @@ def _hand_over_doubt(lock: PortLock, link: Link) -> None:
 def open_line(
     target: str,
     stack: ExitStack,
-    line: LineSettings,
+    on_lock: Callable[[PortLock], object] = _to_nobody,
+    on_lent: Callable[[LentTransport], object] | None = None,
     *,
+    line: LineSettings,
     protocol: str = "facon",
     station: int = 1,
     lock_wait_s: float = 10.0,
@@ -232,14 +223,15 @@ def open_line(
     low_latency: bool = True,
     note: Callable[[str], None] = no_note,
     waiting: Callable[[str], None] = no_note,
-    on_lock: Callable[[PortLock], object] = _to_nobody,
-    on_lent: Callable[[LentTransport], object] | None = None,
+    patience: Patience = _ONE_TRY,
 ) -> Transport:
     """Open the line alone, for who asks more than one PLC on it.
 
     Args:
         target: as for ``connect``.
         stack: closes the line and gives its lock back when it ends.
+        on_lock: is given the lock of a real line, each time that it is taken.
+        on_lent: is given a line that can be lent; None if it shall not be. A modem's call goes on.
         line: speed and format.
         protocol: what will be spoken on it.
         station: of a simulated PLC.
@@ -248,8 +240,7 @@ def open_line(
         low_latency: as for ``connect``.
         note: as for ``connect``.
         waiting: as for ``connect``.
-        on_lock: is given the lock of a real line, each time that it is taken.
-        on_lent: is given a line that can be lent; None if it shall not be. A modem's call goes on.
+        patience: how often a connection that is refused or closed is tried.
 
     Raises:
         UsageError, LineError: as ``connect``.
@@ -275,6 +266,7 @@ def open_line(
         low_latency=low_latency,
         note=note,
         waiting=waiting,
+        patience=patience,
     )
     if on_lent is None or where.kind is TargetKind.MODEM:
         transport = opened(stack, lock_wait_s, on_lock)
@@ -302,6 +294,7 @@ def _open(
     low_latency: bool,
     note: Callable[[str], None],
     waiting: Callable[[str], None],
+    patience: Patience,
 ) -> Transport:
     if where.kind is not TargetKind.SIM:
         from fatektool.transport.open import open_transport
@@ -315,6 +308,7 @@ def _open(
             note=note,
             waiting=waiting,
             on_lock=on_lock,
+            patience=patience,
         )
     from os.path import realpath
     from pathlib import Path

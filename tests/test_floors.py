@@ -36,6 +36,8 @@ FLOORS = {
     "sending": 3,
     "batch": 3,
     "client": 3,
+    "shared_line": 3,
+    "plc_map": 3,
     "connection": 4,
     "jobs": 5,
     "history": 5,
@@ -58,6 +60,7 @@ SHARED = {
     "batch",
     "client",
     "planner",
+    "plc_map",
 }
 TO_THE_SIMULATOR = {"simulator", "connection", "cli"}
 PRINTERS = {"click", "rich", "logging"}

@@ -151,7 +151,8 @@ def test_status(target: str) -> None:
         "fatektool.jobs.times",
     }
     assert {name for name in ours(found) if name.startswith("fatektool.transport.")} == {
-        f"fatektool.transport.{name}" for name in ("base", "lock", "open", "sockets", "target", "tcp", "wait")
+        f"fatektool.transport.{name}"
+        for name in ("base", "lock", "open", "patience", "sockets", "target", "tcp", "wait")
     }
     assert len(found) <= 72
 

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fatektool.cli.output import Voice
+    from fatektool.shared_line import SharedLine
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,11 +141,12 @@ def check_one(
     found: Checked,
     *,
     limit: Limit,
+    shared: SharedLine | None = None,
     progress: Progress = no_progress,
 ) -> CheckDone:
     """Look at one PLC, and at its backup whether it answers or not; ``found`` takes the facts."""
     try:
-        with connection.open(voice, limit=limit) as plc:
+        with connection.open(voice, limit=limit, shared=shared) as plc:
             check_plc(plc, found, expect=plan.expect, reference=plan.reference, progress=progress)
     except FatektoolError as error:
         found.fail(error)

@@ -76,6 +76,7 @@ def check_command(
             voice.of(entry.name),
             Checked(),
             limit=limit,
+            shared=turn.shared,
             progress=turn.progress,
         )
 

@@ -61,7 +61,7 @@ class Done:
 
 def opened(entry: PlcEntry, turn: Turn[Done], voice: Voice, *needs: Command) -> Plc:
     """The PLC, connected within the limit of its turn."""
-    return connection_of(entry).open(voice.of(entry.name), needs=needs, limit=turn.limit)
+    return connection_of(entry).open(voice.of(entry.name), needs=needs, limit=turn.limit, shared=turn.shared)
 
 
 def status_work(voice: Voice, *, brief: bool) -> Callable[[PlcEntry, Turn[Done]], Done]:

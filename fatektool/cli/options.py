@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from fatektool.inventory.entries import PlcEntry
     from fatektool.protocol.commands import Command
     from fatektool.protocol.modbus_map import ModbusMap
+    from fatektool.shared_line import SharedLine
     from fatektool.transport.base import Transport
     from fatektool.transport.limit import Limit
 
@@ -94,6 +95,7 @@ class Connection:
         writes: bool = False,
         limit: Limit | None = None,
         lend: bool = False,
+        shared: SharedLine | None = None,
     ) -> Plc:
         """Open the line to one PLC.
 
@@ -103,6 +105,7 @@ class Connection:
             writes: True if something is to be written, which a read-only line refuses before it is opened.
             limit: ends everything on this line when it is over.
             lend: others may have the line between two rounds.
+            shared: keeps the line open for the next PLC on it.
 
         Raises:
             LineReadOnly: something is to be written to a line that may only be read.
@@ -130,6 +133,7 @@ class Connection:
             modbus_map=self.modbus_map,
             low_latency=self.low_latency,
             lend=lend,
+            shared=shared,
             note=voice.detail,
             waiting=voice.say,
             warn=voice.warn,
@@ -139,11 +143,12 @@ class Connection:
         """Open the line alone, for who asks more than one PLC on it; ``stack`` closes it."""
         from fatektool.connection import open_line
         from fatektool.transport.base import LineSettings
+        from fatektool.transport.patience import Patience
 
         return open_line(
             self.target,
             stack,
-            LineSettings(self.baud, self.format),
+            line=LineSettings(self.baud, self.format),
             protocol=self.protocol,
             station=self.station,
             lock_wait_s=self.lock_wait_s,
@@ -151,6 +156,7 @@ class Connection:
             low_latency=self.low_latency,
             note=voice.detail,
             waiting=voice.say,
+            patience=Patience(self.timeout_s, self.retries, note=voice.detail),
         )
 
 

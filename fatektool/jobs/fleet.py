@@ -4,7 +4,8 @@
 
     tasks ──> lines, the longest first ──> N threads, each with a line at a time ──> ended turns
 
-A thread talks to one PLC by the functions that a single command uses, over a connection of its own. What a
+A thread talks to one PLC by the functions that a single command uses. PLCs behind one gateway share its
+connection, as some serve one at a time, and free it late. What a
 PLC's turn may take is limited; an interrupt ends all turns. A line that hangs holds one of the N threads, and
 no other line.
 """
@@ -19,6 +20,7 @@ from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING, Final, Generic, TypeVar
 
 from fatektool.errors import FatektoolError
+from fatektool.shared_line import SharedLine
 from fatektool.transport.limit import Limit
 
 if TYPE_CHECKING:
@@ -53,6 +55,7 @@ class Turn(Generic[T]):
 
     Attributes:
         task: what is done.
+        shared: the line, open from one PLC on it to the next.
         limit: ends it; None before it begins.
         began: when it did, by the monotonic clock.
         phase: what is being done, in words; empty before it begins.
@@ -65,6 +68,7 @@ class Turn(Generic[T]):
     """
 
     task: Task[T]
+    shared: SharedLine | None = None
     limit: Limit | None = None
     began: float = 0.0
     phase: str = ""
@@ -154,11 +158,14 @@ class Fleet(Generic[T]):
                 line = self._lines.popleft()
             except IndexError:
                 return
-            for turn in line:
-                if self._stop.is_set():
-                    return
-                self._take(turn)
-                self._ended.put(turn)
+            with SharedLine() as shared:
+                for turn in line:
+                    if self._stop.is_set():
+                        return
+                    turn.shared = shared
+                    self._take(turn)
+                    self._ended.put(turn)
+                    shared.between()
 
     def _take(self, turn: Turn[T]) -> None:
         turn.began = time.monotonic()

@@ -53,6 +53,10 @@ class Limit:
         """What is left, at least 0."""
         return 0.0 if self._stop.is_set() else max(0.0, self._end - self._clock())
 
+    def pause(self, seconds: float) -> None:
+        """Wait so many seconds, or until it is over."""
+        self._stop.wait(min(seconds, self.rest_s))
+
     def require_rest(self) -> float:
         """What is left, in seconds.
 

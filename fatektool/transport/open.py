@@ -5,11 +5,12 @@ Each medium's file is loaded only when its kind of target is named.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import UsageError
 from fatektool.transport.base import no_note
 from fatektool.transport.lock import PortLock
+from fatektool.transport.patience import Patience
 from fatektool.transport.target import Target, TargetKind
 
 if TYPE_CHECKING:
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     from contextlib import ExitStack
 
     from fatektool.transport.base import LineSettings, Transport
+
+ONE_TRY: Final = Patience()
 
 
 def open_transport(
@@ -29,6 +32,7 @@ def open_transport(
     note: Callable[[str], None] = no_note,
     waiting: Callable[[str], None] = no_note,
     on_lock: Callable[[PortLock], object] = lambda _lock: None,
+    patience: Patience = ONE_TRY,
 ) -> Transport:
     """Lock a serial port, TCP or UDP target and open it; a modem calls and is connected.
 
@@ -41,6 +45,7 @@ def open_transport(
         note: is told what a curious user may want to know.
         waiting: is told whom this process waits for.
         on_lock: is given the lock.
+        patience: how often a connection that is refused or closed is tried.
 
     Raises:
         LineError: it cannot be opened, or the call finds nobody; PortBusy among them.
@@ -50,7 +55,9 @@ def open_transport(
         from fatektool.transport.serial_port import open_serial
 
         on_lock(_lock(_serial_line(target.path), lock_wait_s, stack, waiting))
-        port = stack.enter_context(open_serial(target.path, line, low_latency=low_latency, note=note))
+        port = stack.enter_context(
+            patience.opened(lambda: open_serial(target.path, line, low_latency=low_latency, note=note))
+        )
         if target.call is None:
             return port
         from fatektool.transport.modem import ModemTransport
@@ -66,7 +73,7 @@ def open_transport(
         if target.kind is TargetKind.TCP:
             from fatektool.transport.tcp import TcpTransport
 
-            return stack.enter_context(TcpTransport(target.text, address))
+            return stack.enter_context(patience.opened(lambda: TcpTransport(target.text, address)))
         from fatektool.transport.udp import UdpTransport
 
         return stack.enter_context(UdpTransport(target.text, address))

@@ -91,11 +91,17 @@ class SocketTransport(Transport):
         self._writable = writable(connected.fileno())
         return connected
 
+    def _last_words(self) -> str:
+        """What the other side said of the end, as part of a sentence; empty for nothing."""
+        return ""
+
     def _broken(self, error: OSError) -> TransportClosed:
+        words = self._last_words()
         self.close()
         return TransportClosed(
-            f"{self.name}: the connection broke: {error.strerror or error}",
-            hint="is the PLC's Ethernet module on, and the cable in?",
+            f"{self.name}: the connection broke: {error.strerror or error}{words}",
+            hint="is the PLC's Ethernet module on, and the cable in? Another program may hold its only "
+            "connection",
             may_return=isinstance(error, ConnectionError),
         )
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import socket
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import TransportClosed
 from fatektool.transport.base import MOST_SAID
@@ -11,6 +12,12 @@ from fatektool.transport.sockets import SocketTransport, connected_to
 
 if TYPE_CHECKING:
     from fatektool.transport.sockets import Address
+
+_HINTS: Final = (
+    "check address and port, and that the PLC's Ethernet module or the gateway is on",
+    "another program may hold the PLC's only connection",
+)
+"""If it could not be connected to; if it took the connection and reset it."""
 
 
 class TcpTransport(SocketTransport):
@@ -37,18 +44,15 @@ class TcpTransport(SocketTransport):
             reason = error.strerror or str(error)
             raise TransportClosed(
                 f"{self.name}: cannot connect to {self._address[0]} port {self._address[1]}: {reason}",
-                hint="check address and port, and that the PLC's Ethernet module or the gateway is on",
+                hint=_HINTS[isinstance(error, ConnectionResetError)],
                 may_return=isinstance(error, ConnectionError),
             ) from error
 
     def _receive(self, connected: socket.socket, max_bytes: int) -> bytes:
         data = connected.recv(max_bytes)
         if not data:
-            from fatektool.transport.said import said_text
-
-            said = said_text(bytes(self._first))
+            words = self._last_words()
             self.close()
-            words = f", after it said {said!r}" if said else ""
             raise TransportClosed(
                 f"{self.name}: the other side closed the connection{words}",
                 hint="another program may hold the PLC's only connection",
@@ -57,3 +61,13 @@ class TcpTransport(SocketTransport):
         if len(self._first) <= MOST_SAID:
             self._first += data
         return data
+
+    def _last_words(self) -> str:
+        from fatektool.transport.said import said_text
+
+        if self._socket is not None:  # what came before a reset can still be read behind it
+            with contextlib.suppress(OSError):
+                self._socket.settimeout(0)
+                self._first += self._socket.recv(MOST_SAID)
+        said = said_text(bytes(self._first))
+        return f", after it said {said!r}" if said else ""
