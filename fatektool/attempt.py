@@ -139,12 +139,15 @@ class Attempts:
     def _next_frame(self, size: int, from_s: float) -> Frame:
         """The next whole frame; bad bytes on the way are dropped and counted.
 
+        What has come in time counts, though a busy computer may have kept this process from looking until later.
+
         Args:
             size: of the answer, in bytes.
             from_s: when the PLC's time begins.
         """
         link = self._link
         hearing, transport = link.hearing, link.transport
+        looked = False
         while True:
             try:
                 frame = hearing.decoder.next_frame()
@@ -155,11 +158,12 @@ class Attempts:
                 continue
             if frame is not None:
                 return frame
-            rest = from_s + link.wait_s - transport.clock()
-            if rest <= 0:
+            rest = max(0.0, from_s + link.wait_s - transport.clock())
+            if looked and not rest:
                 if hearing.decoder.expect_no_more():
                     continue
                 raise TransportTimeout(f"{transport.name}: no answer in time")
+            looked = not rest
             try:
                 data = transport.read(_READ_BYTES, rest)
             except TransportTimeout:

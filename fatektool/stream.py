@@ -117,9 +117,11 @@ def _receive(link: Link, sent: Sent) -> Frame | bytes | None:
     rest = wait_s = (len(sent.raw) + size) * link.byte_time_s + link.wait_s
     began = transport.clock()
     whole = b""
-    while rest > 0:
+    looked = False
+    while rest > 0 or not looked:  # what has come in time counts, however late this process looks
+        looked = rest <= 0
         try:
-            data = transport.read(_READ_BYTES, rest)
+            data = transport.read(_READ_BYTES, max(0.0, rest))
         except TransportTimeout:
             data = b""
         link.counters.bytes_heard += len(data)

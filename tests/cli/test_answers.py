@@ -105,7 +105,7 @@ def test_a_fault_can_be_looked_into(press: Press, cli: Cli, monkeypatch: pytest.
 @pytest.mark.parametrize("as_json", [False, True], ids=["words", "json"])
 def test_a_restore_that_does_not_complete(press: Press, cli: Cli, *, as_json: bool) -> None:
     with served(faults=["power-cut=4"]) as door:
-        words = ["--timeout", "0.2", "--retries", "0", "--yes", *(["--json"] if as_json else [])]
+        words = ["--timeout", "60", "--retries", "0", "--yes", *(["--json"] if as_json else [])]
         done = cli("restore", press.new, "-p", door.target, *words)
         assert done.code == 6
         assert done.err.splitlines()[-1].startswith("fatektool: the restore did not complete (")
@@ -137,11 +137,11 @@ def test_the_command_to_go_on_keeps_every_option(
     with served(faults=["power-cut=1"]) as door:
         monkeypatch.setenv("FATEKTOOL_PORT", door.target)
         done = cli("restore", odd, "--any-header", "--safety-dir", "kept", "--retries", "0", "--changed-only",
-                   "--timeout", "0.2", "--yes")  # fmt: skip
+                   "--timeout", "60", "--yes")  # fmt: skip
         assert done.code == 6
         assert done.err.rstrip().endswith(
             f"fatektool restore --changed-only -p {door.target} '{odd}' --any-header --safety-dir kept "
-            f"--retries 0 --timeout 0.2 --yes"
+            f"--retries 0 --timeout 60 --yes"
         )
 
 

@@ -19,7 +19,8 @@ from .test_simulate import listening, simulator
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-PATIENCE = ("--timeout", 0.03, "--retries", 20)
+WAITS = ("--timeout", 60)
+"""Where every answer comes: a time-out would be one request more than was recorded."""
 
 
 @contextmanager
@@ -55,12 +56,13 @@ def sha256(file: str) -> str:
 def test_a_backup(cli: Cli, name: str, faults: str) -> None:
     """With every fault of the recording, as often as it is asked for."""
     trace = Path(name)
+    patience = ("--timeout", 0.3, "--retries", 20) if faults else WAITS
     with served(faults=faults.split(), seed=11) as door:
-        assert cli("backup", "first.json", "-p", door.target, *PATIENCE, "--trace", trace).code == 0
+        assert cli("backup", "first.json", "-p", door.target, *patience, "--trace", trace).code == 0
     with replayed(trace) as (target, replay):
-        assert cli("backup", "second.json", "-p", target, *PATIENCE).code == 0
+        assert cli("backup", "second.json", "-p", target, *patience).code == 0
         if not faults:
-            assert cli("backup", "third.json", "-p", target, *PATIENCE).code == 0
+            assert cli("backup", "third.json", "-p", target, *patience).code == 0
             assert sha256("third.json") == sha256("first.json")
             assert replay.unknown_count == 0
     assert sha256("second.json") == sha256("first.json")
@@ -74,9 +76,9 @@ def test_what_a_command_says(cli: Cli, words: list[str]) -> None:
     trace = Path("line.ndjson")
     with served() as door:
         door.simulation.plcs[1].write_words("R", 3, [4261])
-        first = cli(*words, "-p", door.target, "--trace", trace, "--json")
+        first = cli(*words, "-p", door.target, "--trace", trace, "--json", *WAITS)
     with replayed(trace, speed=0) as (target, replay):
-        second = cli(*words, "-p", target, "--json")
+        second = cli(*words, "-p", target, "--json", *WAITS)
         assert replay.unknown_count == 0
     documents = [json.loads(done.out) for done in (first, second)]
     for document in documents:
@@ -90,10 +92,10 @@ def test_mseries(cli: Cli) -> None:
     trace, spoken = Path("line.pcap"), ["--protocol", "mseries"]
     with served(protocol="mseries") as door:
         door.simulation.plcs[1].write_words("R", 3, [4261])
-        first = cli("read", "R0-R9", "X3", *spoken, "-p", door.target, "--trace", trace)
+        first = cli("read", "R0-R9", "X3", *spoken, "-p", door.target, "--trace", trace, *WAITS)
     assert "4261" in first.out
     with replayed(trace, protocol="mseries") as (target, replay):
-        assert cli("read", "R0-R9", "X3", *spoken, "-p", target).out == first.out
+        assert cli("read", "R0-R9", "X3", *spoken, "-p", target, *WAITS).out == first.out
         assert replay.unknown_count == 0
 
 
@@ -110,12 +112,12 @@ def test_a_dead_plc_stays_dead(cli: Cli) -> None:
 def test_every_door_and_what_is_said_at_the_end(place: Path, cli: Cli) -> None:
     trace = place / "line.ndjson"
     with served() as door:
-        assert cli("status", "-p", door.target, "--trace", trace).code == 0
+        assert cli("status", "-p", door.target, "--trace", trace, *WAITS).code == 0
     link = place / "plc"
     doors = ["--tcp", ":0", "--udp", ":0", "--pty", link]
     with simulator("--replay", trace, "--replay-speed", 0, *doors, "-v") as running_process:
         for target in listening(running_process, 3):
-            assert cli("status", "-p", target).code == 0
+            assert cli("status", "-p", target, *WAITS).code == 0
             assert cli("read", "R1", "-p", target, "--retries", 0, "--timeout", 0.05).code == 3
         running_process.terminate()
         _, err = running_process.communicate()
@@ -128,14 +130,14 @@ def test_every_door_and_what_is_said_at_the_end(place: Path, cli: Cli) -> None:
 def test_json(place: Path, cli: Cli) -> None:
     trace = place / "line.ndjson"
     with served() as door:
-        assert cli("status", "-p", door.target, "--trace", trace).code == 0
+        assert cli("status", "-p", door.target, "--trace", trace, *WAITS).code == 0
     with simulator("--replay", trace, "--tcp", ":0", "--json", "-q") as running_process:
         assert running_process.stdout is not None
         text = ""
         while not text.endswith("}\n"):
             text += running_process.stdout.readline()
         (target,) = json.loads(text)["listening"]
-        assert cli("status", "-p", target).code == 0
+        assert cli("status", "-p", target, *WAITS).code == 0
         assert cli("read", "R1", "-p", target, "--retries", 0, "--timeout", 0.05).code == 3
         running_process.terminate()
         _, err = running_process.communicate()

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from fatektool.program.archive import load_backup, save_backup
+from tests.guard import GUARD_S
 from tests.program.samples import backup, program
 
 from .house import Door, check, one_line, process, served, started
@@ -44,7 +45,7 @@ def paced(operation: str, page: int) -> Iterator[tuple[Door, threading.Event]]:
 def test_a_backup_is_interrupted(place: Path, number: signal.Signals, *, as_json: bool) -> None:
     with paced("read_page", 10) as (door, asked):
         command = started("backup", "x.json", "-p", door.target, *(["--json"] if as_json else []))
-        assert asked.wait(30)
+        assert asked.wait(GUARD_S)
         command.send_signal(number)
         out, err = command.communicate()
     assert command.returncode == 130
@@ -62,7 +63,7 @@ def test_a_restore_is_interrupted_and_finished(place: Path, number: signal.Signa
     with paced("write_page", 10) as (door, asked):
         words = ["restore", "new.json", "-p", door.target, "--yes", "--single-pass", "--json"]
         command = started(*words)
-        assert asked.wait(30)
+        assert asked.wait(GUARD_S)
         command.send_signal(number)
         out, err = command.communicate()
         assert command.returncode == 6
@@ -89,7 +90,7 @@ def test_a_restore_is_killed_and_finished_by_the_same_command(place: Path) -> No
     with paced("write_page", 10) as (door, asked):
         words = ["restore", "new.json", "-p", door.target, "--yes", "--changed-only", "--single-pass"]
         command = started(*words)
-        assert asked.wait(30)
+        assert asked.wait(GUARD_S)
         command.kill()
         command.communicate()
         assert command.returncode == -signal.SIGKILL

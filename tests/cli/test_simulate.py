@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from fatektool.simulator.build import build_simulation
+from tests.guard import GUARD_S
 
 from .house import NEW, Cli, Press, check, one_line, started
 
@@ -103,7 +104,7 @@ def test_another_protocol_through_a_usb_adapter() -> None:
     with simulator("--tcp", ":0", "--protocol", "mseries", "--latency-timer", 5) as running:
         (door,) = listening(running)
         host, _, port = door.removeprefix("tcp://").rpartition(":")
-        with socket.create_connection((host, int(port)), timeout=10) as client:
+        with socket.create_connection((host, int(port)), timeout=GUARD_S) as client:
             client.sendall(bytes.fromhex("511000020140A18455AA"))
             answer = b""
             while len(answer) < 14 and (more := client.recv(14)):

@@ -12,6 +12,7 @@ import pytest
 
 from fatektool.cli.app import ENTRIES, app
 from fatektool.transport.trace_reader import TraceRecord, read_trace
+from tests.guard import GUARD_S
 
 from .house import process, started
 from .test_signals import paced
@@ -109,7 +110,7 @@ def test_a_command_that_is_interrupted(place: Path, suffix: str, number: signal.
     trace = place / f"line{suffix}"
     with paced("read_page", 10) as (door, asked):
         command = started("backup", "x.json", "-p", door.target, "--trace", trace)
-        assert asked.wait(30)
+        assert asked.wait(GUARD_S)
         command.send_signal(number)
         command.communicate()
     assert command.returncode == 130
@@ -122,7 +123,7 @@ def test_a_command_that_is_killed_keeps_all_but_the_last_record(place: Path) -> 
     trace = place / "line.ndjson"
     with paced("read_page", 10) as (door, asked):
         command = started("backup", "x.json", "-p", door.target, "--trace", trace)
-        assert asked.wait(30)
+        assert asked.wait(GUARD_S)
         command.kill()
         command.communicate()
     lines = [json.loads(line) for line in trace.read_text(encoding="utf-8").splitlines()]

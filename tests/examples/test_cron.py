@@ -13,7 +13,6 @@ from .conftest import NODE_EXPORTER
 if TYPE_CHECKING:
     from .conftest import Blocks, Gateway
 
-pytestmark = pytest.mark.timeout(180)
 
 # Each job at cron's start, and its exit code to 'ended': all else is left to cron.
 AT_START = r"""

@@ -5,14 +5,11 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-import pytest
-
 from .conftest import EXAMPLES, NODE_EXPORTER
 
 if TYPE_CHECKING:
     from .conftest import Blocks, Gateway
 
-pytestmark = pytest.mark.timeout(180)
 
 AGAIN = """
 for name in snapshot fleet snapshot fleet; do systemctl start "fatektool-$name.service"; done

@@ -36,7 +36,7 @@ class Hall:
         }
         for name, lines in more.items():
             tables[name] = tables.get(name, "") + lines
-        text = '[defaults]\ntimeout_s = 0.1\nretries = 0\nexpect = "any"\n'
+        text = '[defaults]\ntimeout_s = 3.0\nretries = 0\nexpect = "any"\n'
         text += "".join(f"\n[plc.{name}]\n{lines}" for name, lines in tables.items())
         Path("fatek.toml").write_text(text, encoding="utf-8")
 

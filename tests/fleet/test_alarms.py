@@ -251,14 +251,12 @@ def test_a_command_that_hangs_is_ended_with_all_it_started(tmp_path: Path) -> No
     os.mkfifo(pipe)
     program = f"exec 3>{shlex.quote(str(pipe))}; sleep 1000 & sleep 1000"
     reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
-    began = time.monotonic()
     assert run_command(["bash", "-c", program], EVENT, time_limit_s=0.3) == (
         "bash did not end within 0.3 s, and was stopped"
     )
     os.set_blocking(reader, True)
     assert os.read(reader, 1) == b""  # the end: nobody has it open any more
     os.close(reader)
-    assert time.monotonic() - began < 10
 
 
 def test_a_command_that_fails_is_warned_of_and_no_more(cli: Cli, plant: Hall) -> None:

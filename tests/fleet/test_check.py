@@ -189,7 +189,7 @@ def test_unreachable(cli: Cli, plant: Hall) -> None:
         assert "no answer from station 1" in words
         code, words, figures = plugin(cli, "-p", "deaf", "--backup", "dead.json", "--max-age", "1d")
         assert code == 2
-        assert words.endswith("backup 0 s old") or "backup 1 s old" in words
+        assert re.search(r"backup \d+ s old", words)
         assert "backup_age" in figures
     assert plugin(cli, "-p", "/dev/nope")[0] == 2
 

@@ -14,6 +14,7 @@ import pytest
 from fatektool.program.archive import load_backup
 from tests.cli.house import OLD, check, served, started
 from tests.cli.terminal import Terminal
+from tests.guard import GUARD_S
 from tests.program.samples import program
 
 from .gateway import plcs_of
@@ -50,7 +51,7 @@ def slow_and_quick() -> Iterator[threading.Event]:
 def test_an_interrupt_tells_what_is_done(number: signal.Signals, *, as_json: bool) -> None:
     with slow_and_quick() as asked:
         command = started("fleet", "backup", "--dir", "backups", *(["--json"] if as_json else []))
-        assert asked.wait(30)
+        assert asked.wait(GUARD_S)
         while not Path("backups/quick.json").exists():
             assert command.poll() is None
         command.send_signal(number)
@@ -77,7 +78,7 @@ def test_an_interrupt_tells_what_is_done(number: signal.Signals, *, as_json: boo
 def test_a_kill_leaves_no_half_file() -> None:
     with slow_and_quick() as asked:
         command = started("fleet", "backup", "--dir", "backups")
-        assert asked.wait(30)
+        assert asked.wait(GUARD_S)
         command.kill()
         command.communicate()
     names = [path.name for path in Path("backups").iterdir() if path.suffix == ".json"]

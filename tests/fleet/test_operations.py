@@ -62,7 +62,6 @@ def free_port() -> str:
 @pytest.mark.skipif(
     not all(map(shutil.which, ("bash", "git", "sed"))), reason="the page is for a POSIX shell with git"
 )
-@pytest.mark.timeout(180)  # forty processes, one after the other
 @pytest.mark.usefixtures("place")
 def test_the_page_gives_what_it_shows() -> None:
     page = PAGE

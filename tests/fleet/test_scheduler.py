@@ -14,6 +14,7 @@ from fatektool.jobs.fleet import Fleet, Task, Turn
 from fatektool.jobs.fleet_lines import addresses_of, line_of
 from fatektool.transport.base import Transport
 from fatektool.transport.limit import Limit, LimitedTransport
+from tests.guard import GUARD_S
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -24,7 +25,7 @@ def work_of(*lines: str, work: Callable[[Turn[str]], str]) -> list[Task[str]]:
     return [Task(f"{line}{number}", line, work) for number, line in enumerate(lines)]
 
 
-def run(tasks: list[Task[str]], jobs: int = 4, deadline_s: float = 10.0) -> list[str]:
+def run(tasks: list[Task[str]], jobs: int = 4, deadline_s: float = GUARD_S) -> list[str]:
     with Fleet(tasks, jobs, deadline_s) as fleet:
         return [turn.task.name for turn in fleet.ended() if turn is not None]
 
@@ -58,7 +59,7 @@ def test_one_at_a_time_on_a_line_and_so_many_lines_at_once(lines: list[str], job
 
 def test_lines_run_side_by_side() -> None:
     """Each waits for all others: one after the other they would wait for ever."""
-    meeting = threading.Barrier(3, timeout=30)
+    meeting = threading.Barrier(3, timeout=GUARD_S)
 
     def work(_: Turn[str]) -> str:
         meeting.wait()
@@ -84,10 +85,10 @@ def test_a_line_that_hangs_delays_no_other() -> None:
 
     def work(turn: Turn[str]) -> str:
         if turn.task.line == "hung":
-            assert others_done.wait(30)  # the others end while this one hangs
+            assert others_done.wait(GUARD_S)  # the others end while this one hangs
         return ""
 
-    with Fleet(work_of("hung", "a", "b", "c", work=work), 2, 30.0) as fleet:
+    with Fleet(work_of("hung", "a", "b", "c", work=work), 2, GUARD_S) as fleet:
         for turn in fleet.ended():
             assert turn is not None
             ended.append(turn.task.line)
@@ -104,7 +105,7 @@ def test_what_goes_wrong_is_that_plc_s_alone() -> None:
             raise ZeroDivisionError("oops")
         return "done"
 
-    with Fleet(work_of("a", "b", "c", work=work), 1, 10.0) as fleet:
+    with Fleet(work_of("a", "b", "c", work=work), 1, GUARD_S) as fleet:
         assert len(list(fleet.ended())) == 3
     a, b, c = fleet.turns
     assert isinstance(a.error, LineError)
@@ -141,7 +142,7 @@ def test_stop_ends_all_and_begins_no_other() -> None:
         return ""
 
     with Fleet(work_of("a", "a", "b", work=work), 1, 3600.0) as fleet:
-        begun.wait(30)
+        assert begun.wait(GUARD_S)
         fleet.stop()
         assert [turn.interrupted for turn in fleet.turns] == [True, True, True]
         assert [turn.duration_s is None for turn in fleet.turns] == [False, True, True]
@@ -153,10 +154,10 @@ def test_looking_on() -> None:
 
     def work(turn: Turn[str]) -> str:
         turn.progress("reading", 3, 9)
-        assert looked.wait(30)
+        assert looked.wait(GUARD_S)
         return ""
 
-    with Fleet(work_of("a", work=work), 1, 30.0) as fleet:
+    with Fleet(work_of("a", work=work), 1, GUARD_S) as fleet:
         for turn in fleet.ended(look_s=0.01):
             running = fleet.running()
             if turn is None and running and running[0].phase == "reading":

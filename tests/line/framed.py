@@ -12,6 +12,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from tests.guard import GUARD_S
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -94,4 +96,4 @@ def framed_on_tcp(program: FramedReply) -> Iterator[str]:
         thread = threading.Thread(target=serve, daemon=True)
         thread.start()
         yield f"tcp://127.0.0.1:{server.getsockname()[1]}"
-        thread.join(20)
+        thread.join(GUARD_S)

@@ -252,7 +252,20 @@ def test_lost_texts_are_said_to_be_lost() -> None:
 def test_the_command(cli: Cli, place: Path, text: str) -> None:
     frame = RawFrame.parse(text)
     with framed_on_tcp(FramedReply(frame.start or 0, frame.end or 0, baud=None)) as target:
-        done = cli("loopback", "--raw", text, "-p", target, "--count", 24, "--json", "--report", "x.html")
+        done = cli(
+            "loopback",
+            "--raw",
+            text,
+            "-p",
+            target,
+            "--count",
+            24,
+            "--timeout",
+            "60",
+            "--json",
+            "--report",
+            "x.html",
+        )
     assert done.code == 0, done
     found = done.document("loopback")
     assert (found["sent"], found["ok"], found["verdict"]) == (24, 24, "pass")
@@ -266,7 +279,7 @@ def test_the_command(cli: Cli, place: Path, text: str) -> None:
 def test_the_command_in_words(cli: Cli) -> None:
     with framed_on_tcp(FramedReply(alter={1: 4}, baud=None)) as target:
         done = cli("loopback", "--raw", "02,03", "-p", target, "--count", 2, "--sizes", "400",
-                   "--timeout", "0.05")  # fmt: skip
+                   "--timeout", "5")  # fmt: skip
     assert done.code == 1
     assert "frame       start 02, end 03" in done.out
     assert "2 mismatch" in done.out

@@ -14,6 +14,7 @@ from fatektool.errors import DataError, FatektoolError, LineError, NoAnswer, Por
 from fatektool.protocol.elements import Element
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.servers import Server, running
+from tests.guard import GUARD_S
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -56,7 +57,7 @@ def test_what_cannot_be_asked_is_refused_and_leaves_nothing_open(
     for target in (address, "sim:"):
         with pytest.raises(UsageError, match=words):
             connect(target, **options)  # type: ignore[arg-type]
-    with connect(address, lock_wait_s=0, timeout_s=5) as plc:
+    with connect(address, lock_wait_s=0, timeout_s=GUARD_S) as plc:
         assert plc.loopback(b"free") == b"free"
 
 
@@ -103,7 +104,7 @@ def test_a_plc_that_went_between_two_questions_is_a_line_error() -> None:
     server = Server(build_simulation())
     door = server.open_tcp()
     with running(server):
-        plc = connect(door.address, timeout_s=5)
+        plc = connect(door.address, timeout_s=GUARD_S)
         plc.loopback(b"A")
     with plc, pytest.raises(LineError, match="cannot connect") as caught:
         plc.loopback(b"B")

@@ -8,6 +8,7 @@ from fatektool.errors import NoAnswer, TransportTimeout
 from fatektool.protocol.commands import Loopback, ReadBriefStatus, ReadPage, ReadRegisters
 from fatektool.protocol.elements import Element
 from fatektool.transport.base import LineSettings
+from fatektool.transport.memory import MemoryTransport
 
 from .peer import BYTE_S, SILENCE, Pieces, Rules, Script, ask_page, fences, linked, page_answer, register
 
@@ -53,6 +54,33 @@ def test_an_answer_is_taken_up_to_the_last_moment(early_s: float) -> None:
     assert linked(Script([(deadline - early_s, register(7))]), retries=0).ask(R0) == (7,)
     with pytest.raises(NoAnswer):
         linked(Script([(deadline + early_s, register(7))]), retries=0).ask(R0)
+
+
+@pytest.mark.parametrize("late_s", [0.0, 0.6, 3600.0])
+def test_an_answer_that_came_in_time_counts_however_late_it_is_looked_at(late_s: float) -> None:
+    """A busy computer may stop this process behind the request for longer than a try lasts."""
+    link = linked(Script([(0.1, register(7))]), retries=0)
+    transport = link.transport
+    assert isinstance(transport, MemoryTransport)
+    write, clock = transport.write, transport.clock
+    looks = 0
+
+    def sent(data: bytes) -> None:
+        nonlocal looks
+        write(data)
+        looks = 1
+
+    def stopped() -> float:
+        nonlocal looks
+        looks += looks > 0
+        if looks == 3:  # the first look sets the deadline, the second is behind the stop
+            transport._now += late_s
+        return clock()
+
+    transport.write = sent  # type: ignore[method-assign]
+    transport.clock = stopped
+    assert link.ask(R0) == (7,)
+    assert link.counters.trouble == 0
 
 
 def test_a_dead_line_takes_one_try_more_than_there_are_retries_and_one() -> None:

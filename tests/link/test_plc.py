@@ -16,6 +16,7 @@ from fatektool.simulator import pty_door
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.servers import Server, running
 from fatektool.transport.base import LineSettings
+from tests.guard import GUARD_S
 
 from .peer import RUNNING, STATUS, STOP, STOPPED, Pieces, Rules, frame, linked, soon
 
@@ -54,7 +55,7 @@ def served(medium: str, folder: Path, **options: object) -> Iterator[str]:
 
 @pytest.fixture(params=MEDIA)
 def plc(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Plc]:
-    with served(request.param, tmp_path) as target, connect(target, timeout_s=5, lock_wait_s=0) as plc:
+    with served(request.param, tmp_path) as target, connect(target, timeout_s=GUARD_S, lock_wait_s=0) as plc:
         yield plc
 
 
@@ -118,8 +119,10 @@ def test_the_link_of_another_is_not_closed() -> None:
 def test_two_plcs_of_one_line() -> None:
     server = Server(build_simulation([1, 2]))
     address = server.open_tcp().address
-    with running(server), connect(address, station=1, timeout_s=5) as first:
-        second = Plc(Link(first.link.transport, first.link.codec, 2, LineSettings(), timeout_s=5), address)
+    with running(server), connect(address, station=1, timeout_s=GUARD_S) as first:
+        second = Plc(
+            Link(first.link.transport, first.link.codec, 2, LineSettings(), timeout_s=GUARD_S), address
+        )
         first.write_registers(Element.parse("R0"), [1])
         second.write_registers(Element.parse("R0"), [2])
         assert first.read_registers(Element.parse("R0"), 1) == (1,)

@@ -35,7 +35,7 @@ class Line:
         self._cli = cli
 
     def __call__(self, *words: object) -> Done:
-        given = () if "--timeout" in words else ("--timeout", "0.1")
+        given = () if "--timeout" in words else ("--timeout", "0.5")
         return self._cli(*words, "-p", self.target, "--protocol", self.protocol, *given)
 
 
@@ -105,7 +105,7 @@ def test_a_trace_is_explained(line: Line, place: Path, cli: Cli) -> None:
 
 
 def test_a_scan_finds_who_answers(line: Line) -> None:
-    found = line("scan", "--stations", "1,2,246-250", "--timeout", "0.05", "--retries", "8", "--json")
+    found = line("scan", "--stations", "1,2,246-250", "--timeout", "0.5", "--retries", "2", "--json")
     document = found.document("scan")
     stations = [row["station"] for row in document["found"]]
     assert set(stations) <= {1, 247}  # a dropped answer is nobody's

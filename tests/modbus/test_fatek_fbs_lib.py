@@ -55,7 +55,6 @@ def python(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(240)
 def test_it_reads_and_writes_the_simulator(python: Path) -> None:
     simulation = build_simulation([3], protocol="modbus-tcp")
     device = simulation.plcs[3]

@@ -22,6 +22,7 @@ from fatektool.protocol.elements import Element
 from fatektool.protocol.modbus_map import parse_map
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.servers import Server, running
+from tests.guard import GUARD_S
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -86,11 +87,11 @@ def foreign_server(framer: FramerType) -> Iterator[int]:
 
     thread = threading.Thread(target=lambda: (loop.run_until_complete(serve()), loop.run_forever()))
     thread.start()
-    assert started.wait(10)
+    assert started.wait(GUARD_S)
     try:
         yield found[0].transport.sockets[0].getsockname()[1]
     finally:
-        asyncio.run_coroutine_threadsafe(found[0].shutdown(), loop).result(10)
+        asyncio.run_coroutine_threadsafe(found[0].shutdown(), loop).result(GUARD_S)
         loop.call_soon_threadsafe(loop.stop)
         thread.join()
         loop.close()
@@ -100,7 +101,7 @@ def foreign_server(framer: FramerType) -> Iterator[int]:
 def test_a_foreign_server(protocol: str) -> None:
     with foreign_server(FRAMERS[protocol]) as port:
         target = f"tcp://127.0.0.1:{port}"
-        with connect(target, station=3, protocol=protocol, timeout_s=2.0) as plc:
+        with connect(target, station=3, protocol=protocol, timeout_s=GUARD_S) as plc:
             wanted = [Element("R", address) for address in range(300)] + [Element("DRC", 200)]
             reading = read_elements(plc, wanted)
             assert not reading.errors
@@ -118,11 +119,11 @@ def test_a_foreign_server(protocol: str) -> None:
             )
             assert plc.link.counters.trouble == 0
         own = parse_map("R0-R3839=400001,M0-M9=100001,R0-R99=300001")
-        with connect(target, station=3, protocol=protocol, timeout_s=2.0, modbus_map=own) as plc:
+        with connect(target, station=3, protocol=protocol, timeout_s=GUARD_S, modbus_map=own) as plc:
             assert plc.read_discretes(Element("M", 0), 4) == (True, False, True, False)
             assert plc.read_registers(Element("R", 0), 2) == (0, 1)
         inputs = parse_map("R0-R3839=300001,M0-M9=000001")
-        with connect(target, station=3, protocol=protocol, timeout_s=2.0, modbus_map=inputs) as plc:
+        with connect(target, station=3, protocol=protocol, timeout_s=GUARD_S, modbus_map=inputs) as plc:
             assert plc.read_registers(Element("R", 0), 2) == (7, 7)
             with pytest.raises(PlcRefused, match="exception 02"):
                 plc.link.ask(ReadRegisters(Element("R", 3000), 1))

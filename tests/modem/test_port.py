@@ -19,6 +19,7 @@ from fatektool.simulator.servers import Server, running
 from fatektool.transport.base import LineSettings
 from fatektool.transport.serial_port import open_serial
 from tests.cli.house import OLD, check, one_line, process, started
+from tests.guard import GUARD_S
 
 from .scripted import SILENCE, ScriptedModem
 
@@ -108,7 +109,7 @@ def test_a_backup_that_is_interrupted_hangs_up(place: Path, number: signal.Signa
     modem = ScriptedModem(plc=simulation.line())
     with plugged_in(place, modem) as target:
         command = started("backup", "x.json", "-p", target, *["--json"] * as_json)
-        assert asked.wait(30)
+        assert asked.wait(GUARD_S)
         command.send_signal(number)
         out, err = command.communicate()
     assert command.returncode == 130
@@ -135,7 +136,7 @@ def test_a_call_that_is_interrupted_before_its_outcome_is_given_up(
     modem = Watched([SILENCE])
     with plugged_in(place, modem) as target:
         command = started("status", "-p", target)
-        assert dialled.wait(30)
+        assert dialled.wait(GUARD_S)
         command.send_signal(number)
         _, err = command.communicate()
     assert command.returncode == 130
@@ -185,7 +186,7 @@ def test_a_port_that_is_pulled_out_during_a_call(place: Path, cli: Cli) -> None:
 def test_a_scan_over_a_modem_asks_more_than_one_plc(place: Path, cli: Cli) -> None:
     modem = ScriptedModem(plc=build_simulation(stations=[1, 3]).line())
     with plugged_in(place, modem) as target:
-        done = cli("scan", "-p", target, "--stations", "1-3", "--timeout", "0.05", "--json")
+        done = cli("scan", "-p", target, "--stations", "1-3", "--timeout", "2", "--json")
     found = done.document("scan")["found"]
     assert [(each["station"], each["baud"]) for each in found] == [(1, None), (3, None)]
     assert (modem.online, modem.hung_up) == (False, 1)

@@ -76,7 +76,6 @@ def test_every_job_over_every_fault(name: str, kind: str, protocol: str, tmp_pat
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(240)
 @pytest.mark.parametrize("name", JOBS)
 def test_more_of_the_same(name: str, tmp_path: Path) -> None:
     for _, kind, protocol in (tuple(case.values) for case in MATRIX if case.values[0] == name):
@@ -86,7 +85,6 @@ def test_more_of_the_same(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(240)
 @pytest.mark.parametrize("name", JOBS)
 def test_two_faults_at_once(name: str, tmp_path: Path) -> None:
     """Any two but a line that echoes now and then: there the echo of 4E cannot be told from its answer."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import time
 from itertools import product
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -32,8 +31,6 @@ OLD, NEW = program(WORDS, seed=1), program(WORDS, seed=2)
 KEPT = [1000 + place for place in range(20)]
 LINE = ("--timeout", "0.03", "--retries", "2")
 SLOW_S = 0.04
-MOST_S = 20.0
-"""Far more than any of these takes, and far less than for ever."""
 
 MEDIA = ("pty", "tcp", "udp") if hasattr(os, "openpty") else ("tcp", "udp")
 
@@ -168,10 +165,7 @@ def test_a_command_over_a_bad_line(turn: Turn, place: Path, cli: Cli) -> None:
     server = Server(simulation)
     target = open_door(server, medium, place)
     with running(server):
-        began = time.monotonic()
         done = cli(*job.words.split(), "-p", target, "--protocol", protocol, "--json", *LINE)
-        took = time.monotonic() - began
-    assert took < MOST_S
     if done.code in job.results:
         job.look(done, device, place)
         return

@@ -18,14 +18,17 @@ from fatektool.connection import connect
 from fatektool.errors import LineError
 from fatektool.protocol.elements import Element
 from fatektool.simulator.build import build_simulation
+from fatektool.simulator.faults import SpoiledAnswer
 from fatektool.simulator.pty_door import PTY_SUPPORTED
 from fatektool.simulator.servers import Server, running
 from tests.cli.house import one_line, process, started
+from tests.guard import GUARD_S
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fatektool.simulator.build import Simulation
+    from fatektool.simulator.slave import Request, Slave
 
 pytestmark = pytest.mark.skipif(not PTY_SUPPORTED, reason="needs ptys and POSIX locks")
 
@@ -74,7 +77,7 @@ def taking_turns(target: str, exchanges: int, locks: tuple[Path, Path]) -> list[
     "exchanges",
     [
         4_000,
-        pytest.param(80_000, marks=[pytest.mark.slow, pytest.mark.timeout(600)], id="an hour at 9600 baud"),
+        pytest.param(80_000, marks=pytest.mark.slow, id="an hour at 9600 baud"),
     ],
 )
 def test_two_processes_on_one_line_never_get_each_others_answers(tmp_path: Path, exchanges: int) -> None:
@@ -126,7 +129,7 @@ def killed_with_an_answer_on_its_way(target: str) -> None:
     script = (
         "import os, signal, sys; from fatektool.connection import connect\n"
         "from fatektool.protocol.elements import Element\n"
-        "plc = connect(sys.argv[1], timeout_s=5)\n"
+        "plc = connect(sys.argv[1], timeout_s=600)\n"
         "send = plc.link.transport.write\n"
         "def write(data):\n    send(data)\n    os.kill(os.getpid(), signal.SIGKILL)\n"
         "plc.link.transport.write = write\n"
@@ -143,29 +146,49 @@ def impatient(target: str) -> None:
     assert "no answer" in one_line(done.err)
 
 
+@contextmanager
+def one_answer_held_back(link: Path) -> Iterator[str]:
+    """A PLC that is slow once: its first answer comes right before the next one."""
+    with line(link, faults=["late=1"]) as (target, simulation):
+        faults = simulation.faults
+        assert faults is not None
+        spoil = faults.spoil
+        struck = False
+
+        def once(slave: Slave, request: Request, answer: bytes) -> SpoiledAnswer:
+            nonlocal struck
+            spoiled = SpoiledAnswer([answer]) if struck else spoil(slave, request, answer)
+            struck = True
+            return spoiled
+
+        faults.spoil = once  # type: ignore[method-assign]  # a fault that strikes once
+        yield target
+
+
 @pytest.mark.parametrize("leave", [killed_with_an_answer_on_its_way, impatient])
 def test_the_answer_to_one_that_is_gone_is_not_taken_by_the_next(tmp_path: Path, leave: Any) -> None:
     """The lock is free at once, and the PLC still at work on the question before: it puts up a fence."""
-    with line(tmp_path / "plc", scan_ms=250) as (target, _):
+    with one_answer_held_back(tmp_path / "plc") as target:
         leave(target)
-        with connect(target, timeout_s=2, lock_wait_s=0) as plc:
+        with connect(target, timeout_s=GUARD_S, lock_wait_s=0) as plc:
             assert plc.read_registers(Element.parse("R9"), 1) == (value(9),)
             assert plc.link.counters.fences == 1
-        with connect(target, timeout_s=2, lock_wait_s=0) as plc:
+            assert plc.link.counters.strays == 1
+        with connect(target, timeout_s=GUARD_S, lock_wait_s=0) as plc:
             assert plc.read_registers(Element.parse("R9"), 1) == (value(9),)
             assert plc.link.counters.fences == 0, "a good end leaves no doubt"
 
 
 def test_a_doubt_is_handed_on_once(tmp_path: Path) -> None:
     """A PLC that answers no fence must not lock everybody out for ever."""
-    with line(tmp_path / "plc", scan_ms=300) as (target, _):
+    with line(tmp_path / "plc", faults=["drop=1"]) as (target, _):
         impatient(target)
         found = []
         for _ in range(2):
             with connect(target, timeout_s=0.01, retries=0) as plc:
                 found.append(plc.link.hearing.doubt)
                 with pytest.raises(LineError):
-                    plc.read_registers(Element.parse("R9"), 1)  # no fence comes down in this time
+                    plc.read_registers(Element.parse("R9"), 1)  # no fence comes down
         assert found == [True, False]
 
 

@@ -27,7 +27,7 @@ def main(target: str, exchanges: int, seed: int) -> None:
     done = turns = wrong = trouble = 0
     while done < exchanges:
         turns += 1
-        with connect(target, timeout_s=5, lock_wait_s=60) as plc:
+        with connect(target, timeout_s=600, lock_wait_s=600) as plc:
             for _ in range(random.randrange(1, 120)):
                 first = random.randrange(REGISTERS - 8)
                 count = random.randrange(1, 8)

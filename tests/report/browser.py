@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from pathlib import Path
     from types import TracebackType
 
-_DEADLINE_S = 40.0
+_DEADLINE_S = 600.0
 _OPTIONS = (
     "--headless=new",
     "--no-sandbox",

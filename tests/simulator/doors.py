@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.servers import Server, running
+from tests.guard import GUARD_S
 
 from .wire import frame
 
@@ -27,7 +28,7 @@ def place(door: Door) -> tuple[str, int]:
 
 @contextmanager
 def connected(door: Door) -> Iterator[socket.socket]:
-    with socket.create_connection(place(door), timeout=10) as client:
+    with socket.create_connection(place(door), timeout=GUARD_S) as client:
         client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         yield client
 

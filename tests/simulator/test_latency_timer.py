@@ -14,6 +14,7 @@ from fatektool.errors import UsageError
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.pty_door import PTY_SUPPORTED
 from fatektool.simulator.servers import Server, running
+from tests.guard import GUARD_S
 
 from .doors import ANSWER, ASK, connected, read, tcp
 from .wire import frame, sent
@@ -89,7 +90,7 @@ def test_over_tcp() -> None:
 def test_on_a_pty(tmp_path: Path) -> None:
     server = Server(build_simulation(latency_timer_ms=16, baud=921600))
     server.open_pty(tmp_path / "plc")
-    with running(server), serial.Serial(str(tmp_path / "plc"), timeout=10) as port:
+    with running(server), serial.Serial(str(tmp_path / "plc"), timeout=GUARD_S) as port:
         start = time.perf_counter()
         for _ in range(10):
             port.write(ASK)

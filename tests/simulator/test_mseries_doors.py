@@ -11,6 +11,7 @@ import serial
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.pty_door import PTY_SUPPORTED
 from fatektool.simulator.servers import Server, running
+from tests.guard import GUARD_S
 
 from .doors import connected, place, read, tcp
 from .mseries_wire import framed, reply, request
@@ -43,7 +44,7 @@ def test_udp() -> None:
     server = Server(build_simulation(protocol="mseries", baud=115200))
     door = server.open_udp()
     with running(server), socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as client:
-        client.settimeout(10)
+        client.settimeout(GUARD_S)
         client.sendto(ASK[:6], place(door))
         client.sendto(LOOPBACK, place(door))
         assert client.recv(1000) == b"\x52" + LOOPBACK[1:]
@@ -55,7 +56,7 @@ def test_udp() -> None:
 def test_pty(tmp_path: Path) -> None:
     server = Server(build_simulation(protocol="mseries", baud=921600))
     server.open_pty(tmp_path / "plc")
-    with running(server), serial.Serial(str(tmp_path / "plc"), timeout=10) as port:
+    with running(server), serial.Serial(str(tmp_path / "plc"), timeout=GUARD_S) as port:
         # Every byte passes as it is: 11H and 13H, line ends, FFH.
         port.write(LOOPBACK)
         assert port.read(len(LOOPBACK)) == b"\x52" + LOOPBACK[1:]

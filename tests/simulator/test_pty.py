@@ -15,6 +15,7 @@ from fatektool.errors import LineError
 from fatektool.simulator import pty_door
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.servers import Server, running
+from tests.guard import GUARD_S
 
 from .doors import ANSWER, ASK, PAGE_HEX, connected, read
 from .wire import frame
@@ -114,7 +115,7 @@ def test_a_link_of_a_dead_simulator_is_replaced(link: Path) -> None:
         "from fatektool.simulator.servers import Server;"
         "Server(build_simulation()).open_pty(sys.argv[1]); os._exit(9)"
     )
-    subprocess.run([sys.executable, "-c", code, str(link)], check=False, timeout=30)
+    subprocess.run([sys.executable, "-c", code, str(link)], check=False, timeout=GUARD_S)
     assert link.is_symlink()
     with closing(Server(build_simulation())) as server:
         door = server.open_pty(link)

@@ -13,6 +13,7 @@ import pytest
 from fatektool.errors import DataError, LineError
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.servers import Server, running
+from tests.guard import GUARD_S
 
 from .doors import ANSWER, ASK, PAGE_HEX, connected, place, read, tcp
 from .wire import frame
@@ -114,7 +115,7 @@ def test_udp() -> None:
     server = Server(build_simulation(baud=921600))
     door = server.open_udp()
     with running(server), socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as client:
-        client.settimeout(10)
+        client.settimeout(GUARD_S)
         assert door.address.startswith("udp://127.0.0.1:")
         # A datagram stands by itself: neither half is a request, and nothing is left of them.
         for data in (ASK[:5], ASK[5:], ASK + ASK):
@@ -130,7 +131,7 @@ def test_udp_answers_the_sender() -> None:
     with running(server):
         for _ in range(100):
             with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as client:
-                client.settimeout(10)
+                client.settimeout(GUARD_S)
                 client.sendto(ASK, place(door))
                 assert client.recv(1000) == ANSWER
 
@@ -197,7 +198,7 @@ def test_close_gives_the_port_back() -> None:
         with connected(door) as client:
             client.sendall(ASK)
             assert read(client, len(ANSWER)) == ANSWER
-    with pytest.raises(OSError, match=r"."), socket.create_connection(address, timeout=10):
+    with pytest.raises(OSError, match=r"."), socket.create_connection(address, timeout=GUARD_S):
         pass
 
 

@@ -46,7 +46,7 @@ def test_a_backup(tshark: Tshark, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 def test_a_line_with_faults(tshark: Tshark, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("FATEKTOOL_LOCK_DIR", str(tmp_path))
     trace = tmp_path / "line.pcap"
-    words = ["--trace", str(trace), "--timeout", "0.03", "--retries", "20", "--quiet"]
+    words = ["--trace", str(trace), "--timeout", "0.3", "--retries", "20", "--quiet"]
     with served(faults=["flip=0.1", "noise=0.1", "truncate=0.05"], seed=5) as door:
         assert run(["backup", str(tmp_path / "plc.json"), "-p", door.target, *words]) == 0
     packets = tshark(trace)

@@ -1,0 +1,68 @@
+"""Property tests: the same cases in each run, unless new ones are looked for.
+
+The default run draws the same cases each time, on every machine, and keeps nothing on disk. ``pytest -m
+slow`` runs all property tests too, with cases drawn from a new seed, which it prints first, and again if one
+fails::
+
+    python -m pytest -m slow                             # a new seed
+    python -m pytest -m slow --hypothesis-seed 7 PATH    # the cases of seed 7 again
+"""
+
+from __future__ import annotations
+
+import os
+import secrets
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from hypothesis import HealthCheck, is_hypothesis_test, settings
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+_SEED = "FATEKTOOL_PROPERTY_SEED"
+"""Tells the processes of pytest-xdist the seed."""
+
+# A slow or busy machine is no fault of what is tested.
+_ALWAYS: dict[str, Any] = {
+    "database": None,
+    "deadline": None,
+    "print_blob": True,
+    "suppress_health_check": [HealthCheck.too_slow],
+}
+settings.register_profile("same", derandomize=True, **_ALWAYS)
+settings.register_profile("random", derandomize=False, **_ALWAYS)
+
+
+def _looks_for_new_cases(config: pytest.Config) -> bool:
+    """True if slow tests are asked for: ``-m slow``, or an expression that has it."""
+    words = str(config.option.markexpr).split()
+    return any(word == "slow" and words[at - 1 : at] != ["not"] for at, word in enumerate(words))
+
+
+@pytest.hookimpl(tryfirst=True)  # before Hypothesis reads its seed, and before a test module is imported
+def pytest_configure(config: pytest.Config) -> None:
+    random = _looks_for_new_cases(config)
+    settings.load_profile("random" if random else "same")
+    if random and config.option.hypothesis_seed is None:
+        config.option.hypothesis_seed = os.environ.setdefault(_SEED, str(secrets.randbelow(1 << 32)))
+
+
+def pytest_report_header(config: pytest.Config) -> str:
+    if not _looks_for_new_cases(config):
+        return "property tests: the same cases in each run; new ones with -m slow"
+    return f"property tests: new cases, from --hypothesis-seed={config.option.hypothesis_seed}"
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: Sequence[pytest.Item]) -> None:
+    if _looks_for_new_cases(config):
+        for item in items:
+            function = getattr(item, "obj", None)
+            if function is not None and is_hypothesis_test(function):
+                item.add_marker("slow")
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
+    if _looks_for_new_cases(config) and terminalreporter.stats.get("failed"):
+        again = f"-m slow --hypothesis-seed={config.option.hypothesis_seed}"
+        terminalreporter.write_line(f"The same cases again: python -m pytest {again} PATH::TEST")
