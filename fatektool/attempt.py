@@ -139,7 +139,7 @@ class Attempts:
     def _next_frame(self, size: int, from_s: float) -> Frame:
         """The next whole frame; bad bytes on the way are dropped and counted.
 
-        What has come in time counts, though a busy computer may have kept this process from looking until later.
+        What has come in time counts, though a busy computer may have kept this process from looking.
 
         Args:
             size: of the answer, in bytes.

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from fatektool.protocol.commands import Request
 
 A = TypeVar("A")
+B = TypeVar("B")
 
 
 def ask_all(
@@ -83,6 +84,25 @@ def ask_until_refused(
         except PlcRefused as error:  # what was answered before is refused now: nothing is proven
             return [], error
     return batch.answers, refusal
+
+
+def proven(link: Link, work: Callable[[], B], again: Callable[[], B]) -> B:
+    """Do work that asks one thing after the other, each by what was answered before.
+
+    Args:
+        link: the line.
+        work: asks, and gives what it found.
+        again: the same, each of its reads behind a fence (``Link.fence``) of its own. It is done if something
+            was out of order on the line, as an answer may then have been another question's.
+
+    Raises:
+        NoAnswer: there was no answer to trust.
+        PlcRefused: the PLC refuses a fence that it took before.
+    """
+    signs = link.signs[:2]
+    found = work()
+    link.fences.close()
+    return found if link.signs[:2] == signs else again()
 
 
 def tell_all(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fatektool.batch import ask_all, ask_until_refused
+from fatektool.batch import ask_all, ask_until_refused, proven
 from fatektool.errors import PlcRefused
 from fatektool.jobs.division import Division, Refusals
 from fatektool.protocol.commands import MAX_DISCRETES, Command, ReadDisabled
@@ -28,28 +28,37 @@ def read_disabled(plc: Plc, elements: Iterable[Element]) -> tuple[dict[Element, 
     Raises:
         LineError: no answer.
     """
+    if Command.READ_DISABLED not in plc.link.codec.commands:
+        return {}, Refusals()
+    wanted = sorted(set(elements))
+    return proven(plc.link, lambda: _read(plc, wanted, fenced=False), lambda: _read(plc, wanted, fenced=True))
+
+
+def _read(plc: Plc, wanted: list[Element], *, fenced: bool) -> tuple[dict[Element, bool], Refusals]:
     flags: dict[Element, bool] = {}
     refusals = Refusals()
-    if Command.READ_DISABLED not in plc.link.codec.commands:
-        return flags, refusals
 
     def together(some: Sequence[Element]) -> list[Element]:
         requests = [ReadDisabled(run[0], len(run)) for run in _runs(some)]
         while requests:
-            answers, refusal = ask_until_refused(plc.link, requests)
+            if fenced:
+                plc.link.fence(requests[0])
+            answers, refusal = ask_until_refused(plc.link, requests[:1] if fenced else requests)
             for request, bits in zip(requests, answers, strict=False):
                 flags.update({request.first.after(place): bit for place, bit in enumerate(bits)})
             requests = requests[len(answers) + (refusal is not None) :]
         return [element for element in some if element not in flags]
 
     def alone(element: Element) -> str | None:
+        request = ReadDisabled(element, 1)
+        if fenced:
+            plc.link.fence(request)
         try:
-            ((flags[element],),) = ask_all(plc.link, [ReadDisabled(element, 1)])
+            ((flags[element],),) = ask_all(plc.link, [request])
         except PlcRefused as error:
             return error.message
         return None
 
-    wanted = sorted(set(elements))
     division = Division(wanted, together, alone, refusals)
     for run in _runs(together(wanted)):
         division.divide(run)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from itertools import chain
 from typing import TYPE_CHECKING, Any, Final
 
-from fatektool.batch import ask_all, ask_until_refused
+from fatektool.batch import ask_all, ask_until_refused, proven
 from fatektool.errors import PlcRefused
 from fatektool.jobs.division import Division, Refusals
 from fatektool.jobs.extent import ask_limits, excluded, extent_of, neighbours
@@ -29,7 +29,7 @@ from fatektool.protocol.commands import (
 from fatektool.protocol.elements import Element, Stretch
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from fatektool.client import Plc
 
@@ -97,6 +97,8 @@ class _Reader:
     def __init__(self, plc: Plc, limits: Mapping[str, int] | None) -> None:
         self._plc = plc
         self._limits = limits
+        self._answers: list[tuple[Request[Any], Any]] = []
+        self._fenced = False
         self.known = Values()
         self.refusals = Refusals()
         self.requests = 0
@@ -108,18 +110,59 @@ class _Reader:
         if not refused:
             return
         wanted = sorted(_each(elements))
-        division = Division(wanted, self._ask_together, self._ask_alone, self.refusals)
         missing = self._missing(wanted)
         if self._limits is None and len(missing) > 1:
             self._limits = ask_limits(self._plc)
             self.requests += 1
-            inside = self._leave_out_excluded(missing, division)
+            inside = self._leave_out_excluded(missing, wanted)
             if unasked or len(inside) < len(missing):
                 refused, _ = self._ask(self._plan(inside))
                 missing = self._missing(inside)
-        if missing:
+
+        def divide(division: Division) -> None:
             for part in by_request(missing, refused):
                 division.divide(part)
+
+        if missing:
+            self._search(wanted, divide)
+
+    def _leave_out_excluded(self, missing: Sequence[Element], wanted: Sequence[Element]) -> list[Element]:
+        """Ask the first of neighbours that the PLC says it does not have; give what is still to be read."""
+        has = self._limits or {}
+        outside = [element for element in missing if excluded(element, has)]
+        if not outside:
+            return list(missing)
+
+        def ask_first(division: Division) -> None:
+            for first, *others in neighbours(outside):
+                if division.refuses(first):
+                    says = f"its status (53) says that the PLC has {extent_of(first, has)}"
+                    self.refusals.leave_out(others, f"{first} is refused, and {says}")
+
+        self._search(wanted, ask_first)  # what is not refused shows that the PLC has more than it says
+        return [element for element in missing if element not in self.refusals.errors]
+
+    def _search(self, wanted: Sequence[Element], work: Callable[[Division], None]) -> None:
+        """Ask one thing after the other, each by what was answered before, and have it proven."""
+        answers, errors, left_out = self._answers, self.refusals.errors, self.refusals.not_asked
+
+        def search() -> None:
+            self.known, self._answers = Values(), []
+            for request, answer in answers:
+                self._take(request, answer)
+            self.refusals = Refusals(dict(errors), set(left_out))
+            work(Division(wanted, self._ask_together, self._ask_alone, self.refusals))
+
+        def again() -> None:
+            self._fenced = True
+            search()
+            self._fenced = False
+
+        proven(self._plc.link, search, again)
+
+    def _take(self, request: Request[Any], answer: Any) -> None:
+        self._answers.append((request, answer))
+        self.known.take(request, answer)
 
     def _plan(self, elements: Sequence[Element | Stretch]) -> list[Request[Any]]:
         codec = self._plc.link.codec
@@ -134,15 +177,17 @@ class _Reader:
         """Ask all, or to the first that is refused; give those that are refused, and the rest."""
         refused: list[Request[Any]] = []
         while requests and not (stop and refused):
-            answers, refusal = ask_until_refused(self._plc.link, requests)
-            for request, answer in zip(requests, answers, strict=False):
-                self.known.take(request, answer)
-            self.requests += len(answers)
+            some = requests[:1] if self._fenced else requests
+            if self._fenced:
+                self._plc.link.fence(some[0])
+            answers, refusal = ask_until_refused(self._plc.link, some)
+            for request, answer in zip(some, answers, strict=False):
+                self._take(request, answer)
             rest = requests[len(answers) :]
             if refusal is not None:
                 refused.append(rest[0])
-                self.requests += 1
                 rest = rest[1:]
+            self.requests += len(requests) - len(rest)
             requests = rest
         return refused, requests
 
@@ -150,34 +195,17 @@ class _Reader:
         refused, _ = self._ask(self._plan(elements))
         return self._missing(elements) if refused else []
 
-    def _leave_out_excluded(self, elements: Sequence[Element], division: Division) -> list[Element]:
-        """Ask the first of neighbours that the PLC says it does not have; give what is still to be read."""
-        has = self._limits or {}
-        inside = [element for element in elements if not excluded(element, has)]
-        for first, *others in neighbours(element for element in elements if excluded(element, has)):
-            if division.refuses(first):
-                why = f"{first} is refused, and its status (53) says that the PLC has {extent_of(first, has)}"
-                self.refusals.leave_out(others, why)
-            else:  # it has more than it says
-                inside += others
-        return sorted(inside)
-
     def _ask_alone(self, element: Element) -> str | None:
         one = element.kind.bits == 1
         request: Request[Any] = ReadDiscretes(element, 1) if one else ReadRegisters(element, 1)
-        link = self._plc.link
         self.requests += 1
+        if self._fenced:
+            self._plc.link.fence(request)
         try:
-            try:
-                (answer,) = ask_all(link, [request])
-            except PlcRefused:
-                if not link.counters.trouble:
-                    raise
-                link.fence(request)  # on a bad line it may have been the answer to an earlier request
-                (answer,) = ask_all(link, [request])
+            (answer,) = ask_all(self._plc.link, [request])
         except PlcRefused as error:
             return error.message
-        self.known.take(request, answer)
+        self._take(request, answer)
         return None
 
 

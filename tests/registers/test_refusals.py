@@ -193,6 +193,21 @@ def test_a_protocol_without_53_searches_the_end(protocol: str) -> None:
     assert {element.address for element in reading.errors} == gap
 
 
+@pytest.mark.parametrize("protocol", ["facon", "mseries"])
+@pytest.mark.parametrize("fault", ["duplicate=0.3", "duplicate=0.1 flip=0.05", "late=0.1", "noise=0.2"])
+def test_a_search_takes_no_other_answer_for_its_own(protocol: str, fault: str) -> None:
+    """Answers that come twice over a paced line would shift all that follow, refusals too."""
+    holes = {3, 11, 12, *range(40, 52)}
+    for seed in range(8):
+        made = with_holes(holes, protocol=protocol, baud=9600, faults=fault.split(), seed=seed)
+        for at in set(range(64)) - holes:
+            made.device.write_words("R", at, [1000 + at * 7])
+        reading = read_elements(made.plc, [*registers(range(64)), *registers([8072, 8073])])
+        assert {element.address for element in reading.errors} == {*holes, 8072, 8073}, seed
+        for element, value in reading.values.items():
+            assert value == 1000 + element.address * 7, (seed, element)
+
+
 def test_a_refusal_has_nothing_read_again(monkeypatch: pytest.MonkeyPatch) -> None:
     sent = recorded(monkeypatch)
     made = with_holes({3000})
