@@ -15,6 +15,7 @@ import pytest
 from fatektool.errors import DataError, UsageError
 from fatektool.history.checking import check
 from fatektool.history.packing import pack_loose
+from fatektool.history.push import push
 from fatektool.history.repository import Repository
 from fatektool.history.writing import writing
 
@@ -191,10 +192,15 @@ def test_a_shallow_clone_is_whole(shallow: Book) -> None:
         shallow.history.show("press", "~2")
 
 
-def test_a_shallow_clone_is_written(shallow: Book, book: Book) -> None:
+@pytest.mark.parametrize("by", ["git", "dulwich"])
+def test_a_shallow_clone_is_written(
+    shallow: Book, book: Book, monkeypatch: pytest.MonkeyPatch, by: str
+) -> None:
+    if by == "dulwich":
+        monkeypatch.setenv("PATH", str(book.folder))  # no git there
     assert shallow.record("press", ONE)[0].revision
     assert check(shallow.folder).commits == 3
-    shallow.git("push", "--quiet", "origin", "main")
+    assert push(shallow.folder, "origin").sent
     shallow.git("fetch", "--quiet", "--unshallow")
     assert (check(book.folder).commits, check(shallow.folder).commits) == (4, 4)
     assert not check(shallow.folder).shallow
