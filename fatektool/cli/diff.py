@@ -1,4 +1,4 @@
-"""``diff``: two backups against each other."""
+"""``diff``: two programs against each other."""
 
 from __future__ import annotations
 
@@ -6,19 +6,18 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fatektool.cli.differences import difference_lines
-from fatektool.cli.documents import differences
+from fatektool.cli.differences import program_lines
+from fatektool.cli.documents import program_differences
 from fatektool.cli.options import PATH, voice_options
+from fatektool.cli.program_files import program_file
 from fatektool.cli.report import report_option, write_report
 from fatektool.jobs.times import utc
-from fatektool.program.archive import load_backup
-from fatektool.program.compare import compare
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from fatektool.cli.output import Voice
-    from fatektool.program.image import Program
+    from fatektool.project.comparison import ProgramComparison
 
 
 @click.command("diff", epilog="Example: fatektool diff monday.json tuesday.json")
@@ -27,25 +26,36 @@ if TYPE_CHECKING:
 @report_option
 @voice_options
 def diff_command(a: Path, b: Path, voice: Voice, *, report: Path | None) -> int:
-    """Compare the backups A and B: exit 0 if the programs are the same, 1 if not. Needs no PLC."""
-    return show_difference((str(a), load_backup(a).program), (str(b), load_backup(b).program), voice, report)
+    """Compare the programs A and B: exit 0 if they are the same, 1 if not. Needs no PLC.
+
+    Each is a backup or a WinProladder project: of that the image is compared, whatever the order of bytes.
+    """
+    from fatektool.project.comparison import compare_files
+
+    one, other = program_file(a, voice), program_file(b, voice)
+    sides = (str(a), one.sha256), (str(b), other.sha256)
+    return show_difference(*sides, compare_files(one, other), voice, report)
 
 
 def show_difference(
-    a: tuple[str, Program], b: tuple[str, Program], voice: Voice, report: Path | None = None
+    a: tuple[str, str],
+    b: tuple[str, str],
+    found: ProgramComparison,
+    voice: Voice,
+    report: Path | None = None,
 ) -> int:
-    """Print what differs between two programs, each with what it is called; give the exit code."""
-    (a_name, one), (b_name, other) = a, b
-    found = compare(one, other)
+    """Print what differs between two programs, each with its name and its hash; give the exit code."""
+    (a_name, a_hash), (b_name, b_hash) = a, b
     document = {
         "schema": "fatektool.diff/1",
-        "a": {"file": a_name, "sha256": one.sha256},
-        "b": {"file": b_name, "sha256": other.sha256},
-        **differences(found),
+        "a": {"file": a_name, "sha256": a_hash},
+        "b": {"file": b_name, "sha256": b_hash},
+        **program_differences(found),
     }
-    voice.show(document, difference_lines(found, f"same: {len(one.pages)} pages", a_name, b_name))
-    if report is not None:
+    code = ", same code" if found.same_code else ""
+    voice.show(document, program_lines(found, f"same: {len(found.a.pages)} pages{code}", a_name, b_name))
+    if report is not None and found.b is not None:
         from fatektool.report.program import diff_report
 
-        write_report(report, diff_report(document, one, other, time=utc()))
+        write_report(report, diff_report(document, found.a, found.b, time=utc()))
     return 0 if found.same else 1

@@ -7,11 +7,15 @@ from typing import TYPE_CHECKING, Final
 from fatektool.program.headers.header import PAGE_WORDS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
+    from fatektool.ladder.differences import NetworkChange
     from fatektool.program.compare import Comparison
+    from fatektool.project.comparison import ProgramComparison
 
 _WORDS_SHOWN: Final = 8
+_WHOLE: Final = 40
+_CONTEXT: Final = 3
 
 
 def difference_lines(found: Comparison, same: str, a: str, b: str) -> Iterator[str]:
@@ -40,11 +44,64 @@ def difference_lines(found: Comparison, same: str, a: str, b: str) -> Iterator[s
         yield f"  page {page.page}, {len(page.words)} of {PAGE_WORDS} words: {shown}{rest}"
 
 
-def size_of(found: Comparison) -> str:
-    """How much differs, in words: ``3 words in 1 page``."""
-    if found.a_ladder_words != found.b_ladder_words:
-        return f"ladder size {found.a_ladder_words} words, and {found.b_ladder_words}"
-    return _extent(found)
+def program_lines(found: ProgramComparison, same: str, a: str, b: str) -> Iterator[str]:
+    """What differs between two programs: a line a page, then the networks as a unified diff of instructions.
+
+    Args:
+        found: the comparison.
+        same: the line for two programs that are the same.
+        a: what the first is called.
+        b: what the second is called.
+    """
+    yield from difference_lines(found.pages, same, a, b)
+    if found.networks is None:
+        return
+    if found.same_code:
+        if not found.same and found.code is not None:
+            size = f"{_count(len(found.code.words), 'word')} in {_count(len(found.code.networks), 'network')}"
+            exchanged = found.b is not None and found.a.header.byte_order != found.b.header.byte_order
+            why = "the two bytes of each word are exchanged" if exchanged else "what differs is not code"
+            yield f"same code: {size}; {why}"
+        return
+    yield f"networks: {found.networks_summary}"
+    yield f"--- {a}"
+    yield f"+++ {b}"
+    yield from change_lines(found.networks)
+
+
+def change_lines(changes: Iterable[NetworkChange]) -> Iterator[str]:
+    """Networks that differ, a hunk each."""
+    for change in changes:
+        yield from _network_lines(change)
+
+
+def _network_lines(change: NetworkChange) -> Iterator[str]:
+    """A network as a hunk: all of it, or of a long one what is near a difference."""
+    here, there = (network.name if network is not None else "" for network in (change.a, change.b))
+    moved = f"{here} -> {there}" if here and there and here != there else here or there
+    yield f"@@ {moved} {change.change} @@"
+    near = {
+        near
+        for number, line in enumerate(change.lines)
+        if line[0] != " "
+        for near in range(number - _CONTEXT, number + _CONTEXT + 1)
+    }
+    left_out = False
+    for number, line in enumerate(change.lines):
+        if len(change.lines) <= _WHOLE or number in near:
+            yield line
+        elif not left_out:
+            yield " ..."
+        left_out = not (len(change.lines) <= _WHOLE or number in near)
+
+
+def size_of(found: ProgramComparison) -> str:
+    """How much differs, in words: ``N0009 changed, 3 words in 1 page``."""
+    pages = found.pages
+    if pages.a_ladder_words != pages.b_ladder_words:
+        return f"ladder size {pages.a_ladder_words} words, and {pages.b_ladder_words}"
+    networks = found.networks_summary
+    return _extent(pages) if networks is None else f"{networks}, {_extent(pages)}"
 
 
 def _extent(found: Comparison) -> str:

@@ -7,15 +7,17 @@ from typing import TYPE_CHECKING, Any
 from fatektool.jobs.times import utc
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from fatektool.client import Plc
     from fatektool.errors import FatektoolError
     from fatektool.jobs.restore import RestoreResult
     from fatektool.jobs.status import StatusReport
+    from fatektool.ladder.differences import NetworkChange
     from fatektool.program.archive import Backup
     from fatektool.program.compare import Comparison
-    from fatektool.program.image import Program
+    from fatektool.project.comparison import ProgramComparison
 
 
 def where(plc: Plc) -> dict[str, Any]:
@@ -107,13 +109,34 @@ def inspect_document(backup: Backup, file: Path) -> dict[str, Any]:
     return {
         "schema": "fatektool.inspect/1",
         "file": str(file),
+        "kind": "backup",
         **backup_summary(backup),
         "faults": list(backup.program.header_faults),
     }
 
 
+def program_differences(found: ProgramComparison) -> dict[str, Any]:
+    """Two programs' differences, networks and all: ``a`` is the file, or the first file."""
+    return {**differences(found.pages), "networks": networks_document(found.networks)}
+
+
+def networks_document(changes: Sequence[NetworkChange] | None) -> list[dict[str, Any]] | None:
+    """The networks that differ; null where one of the programs has no mnemonics."""
+    if changes is None:
+        return None
+    return [
+        {
+            "change": change.change.value,
+            "a": None if change.a is None else change.a.number,
+            "b": None if change.b is None else change.b.number,
+            "lines": list(change.lines),
+        }
+        for change in changes
+    ]
+
+
 def differences(comparison: Comparison) -> dict[str, Any]:
-    """Two programs' differences: ``a`` is the file, or the first file."""
+    """Two programs' pages that differ: ``a`` is the file, or the first file."""
     return {
         "same": comparison.same,
         "a_ladder_words": comparison.a_ladder_words,
@@ -134,16 +157,16 @@ def differences(comparison: Comparison) -> dict[str, Any]:
 
 
 def verify_document(
-    plc: Plc, file: Path, program: Program, found: Comparison, duration_s: float
+    plc: Plc, file: Path, sha256: str, found: ProgramComparison, duration_s: float
 ) -> dict[str, Any]:
     """``fatektool.verify/1``: a file's program against the PLC's."""
     return {
         "schema": "fatektool.verify/1",
         **where(plc),
         "file": str(file),
-        "sha256": program.sha256,
+        "sha256": sha256,
         "duration_s": round(duration_s, 3),
-        **differences(found),
+        **program_differences(found),
     }
 
 

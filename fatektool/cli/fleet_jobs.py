@@ -18,9 +18,10 @@ from fatektool.errors import DataError, PlcError, UsageError
 from fatektool.jobs.backup import backup
 from fatektool.jobs.safekeeping import former_hash, require_ladder
 from fatektool.jobs.status import read_status
-from fatektool.jobs.verify import verify
-from fatektool.program.archive import load_backup, save_backup
+from fatektool.jobs.verify import verify_file
+from fatektool.program.archive import save_backup
 from fatektool.program.files import read_bounded
+from fatektool.project.program_file import load_program
 from fatektool.protocol.commands import Command
 
 if TYPE_CHECKING:
@@ -140,12 +141,12 @@ def verify_work(voice: Voice) -> Callable[[PlcEntry, Turn[Done]], Done]:
         reference = entry.reference
         if reference is None:
             raise UsageError("it has no reference", hint='put reference = "FILE" into the inventory')
-        program = load_backup(reference).program
+        on_file = load_program(reference)
         with opened(entry, turn, voice, Command.READ_PAGE) as plc:
             clock = plc.link.transport.clock
             began = clock()
-            found = verify(plc, program, progress=turn.progress)
-            document = verify_document(plc, reference, program, found, clock() - began)
+            found = verify_file(plc, on_file, progress=turn.progress)
+            document = verify_document(plc, reference, on_file.sha256, found, clock() - began)
         words = f"same as {reference}" if found.same else f"DIFFERS from {reference}: {size_of(found)}"
         return Done(0 if found.same else 1, document, words, reference, not found.same)
 

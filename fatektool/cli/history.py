@@ -5,13 +5,14 @@ from __future__ import annotations
 import sys
 from contextlib import closing
 from functools import wraps
-from itertools import islice
+from itertools import chain, islice
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from fatektool.cli.backup import STDOUT
 from fatektool.cli.diff import show_difference
+from fatektool.cli.differences import change_lines
 from fatektool.cli.history_documents import (
     check_document,
     check_lines,
@@ -34,6 +35,7 @@ from fatektool.history.history import History
 from fatektool.jobs.times import utc
 from fatektool.program.archive import load_backup
 from fatektool.program.files import require_place
+from fatektool.project.comparison import compare_programs
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -137,14 +139,17 @@ def log_command(name: str | None, folder: Path, voice: Voice, *, limit: int | No
 @history_option
 @voice_options
 def show_command(which: str, folder: Path, voice: Voice) -> None:
-    """Show what the history holds of a PLC, now or at a revision, as 'inspect' does."""
-    found = History(folder).show(*_parted(which))
+    """Show what the history holds of a PLC, now or at a revision, as 'inspect' does; then what changed."""
+    history = History(folder)
+    found = history.show(*_parted(which))
+    before = history.before(found)
+    changes = None if before is None else compare_programs(before.program, found.backup.program).networks
     warn_of_image(found.backup.program, voice)
     rows = [
         ("recorded", f"{utc(found.commit.time)}: {found.commit.subject}"),
         *backup_rows(found.backup, found.label),
     ]
-    voice.show(show_document(found, folder), table(rows))
+    voice.show(show_document(found, folder, changes), chain(table(rows), change_lines(changes or ())))
 
 
 @history_command.command(
@@ -163,9 +168,9 @@ def diff_command(name: str, a: str, b: str, folder: Path, voice: Voice, *, repor
     """
     history = History(folder)
     one, other = history.show(name, a), history.show(name, b)
-    return show_difference(
-        (one.label, one.backup.program), (other.label, other.backup.program), voice, report
-    )
+    old, new = one.backup.program, other.backup.program
+    sides = (one.label, old.sha256), (other.label, new.sha256)
+    return show_difference(*sides, compare_programs(old, new), voice, report)
 
 
 @history_command.command("check", epilog="Example: fatektool history check --history plc-history")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from fatektool.cli.documents import backup_summary
+from fatektool.cli.documents import backup_summary, networks_document
 from fatektool.history.messages import count
 from fatektool.history.revisions import SHORT
 from fatektool.jobs.times import utc
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from fatektool.history.checking import Checked, Fault
     from fatektool.history.history import Change, Recorded, Stored
     from fatektool.history.push import Pushed
+    from fatektool.ladder.differences import NetworkChange
     from fatektool.program.archive import Backup
 
 
@@ -79,7 +80,9 @@ def log_line(change: Change) -> str:
     return f"{change.commit.revision[:SHORT]}  {utc(change.commit.time)}  {named}{removed}"
 
 
-def show_document(found: Stored, folder: Path) -> dict[str, Any]:
+def show_document(
+    found: Stored, folder: Path, changes: Sequence[NetworkChange] | None = None
+) -> dict[str, Any]:
     """``fatektool.history-show/1``."""
     return {
         "schema": "fatektool.history-show/1",
@@ -88,6 +91,7 @@ def show_document(found: Stored, folder: Path) -> dict[str, Any]:
         "subject": found.commit.subject,
         **backup_summary(found.backup),
         "faults": list(found.backup.program.header_faults),
+        "networks": networks_document(changes),
     }
 
 

@@ -1,4 +1,4 @@
-"""``inspect``: what a backup holds."""
+"""``inspect``: what a backup or a project holds."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from fatektool.cli.image_words import warn_of_image
 from fatektool.cli.options import PATH, voice_options
 from fatektool.cli.output import Voice, table
 from fatektool.cli.pairs import together
-from fatektool.program.archive import load_backup
+from fatektool.cli.program_files import encoding_option, program_file
+from fatektool.cli.project_view import project_document, project_rows, sum_words
 from fatektool.program.files import write_whole
 
 if TYPE_CHECKING:
@@ -20,24 +21,30 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fatektool.program.archive import Backup
-    from fatektool.program.headers.header import Sum
 
 
 @click.command("inspect", epilog="Example: fatektool inspect press.json --raw press.bin")
 @click.argument("file", type=PATH)
 @click.option("--raw", type=PATH, metavar="FILE.bin", help="Write the bare pages.")
 @click.option("--force", is_flag=True, help="Replace FILE.bin if it exists.")
+@encoding_option
 @voice_options
-def inspect_command(file: Path, voice: Voice, *, raw: Path | None, force: bool) -> None:
-    """Show and check what the backup FILE holds. Needs no PLC."""
+def inspect_command(file: Path, voice: Voice, *, raw: Path | None, force: bool, encoding: str | None) -> None:
+    """Show and check what FILE holds, a backup or a WinProladder project. Needs no PLC."""
     together("force", holds=raw is not None, needs="--raw")
     require_raw_name(raw, file)
-    found = load_backup(file)
-    warn_of_image(found.program, voice)
+    on_file = program_file(file, voice, encoding)
+    found = on_file.backup
+    if on_file.project is None or on_file.header.family is not None:  # an FBE's image has no known header
+        warn_of_image(on_file.program, voice)
+    data = on_file.program.data if on_file.project is None else on_file.project.memory.image
     if raw is not None:
-        write_whole(raw, found.program.data, overwrite=force)
-        voice.say(f"{len(found.program.data)} bytes written to {raw}")
-    voice.show(inspect_document(found, file), table(backup_rows(found, str(file))))
+        write_whole(raw, data, overwrite=force)
+        voice.say(f"{len(data)} bytes written to {raw}")
+    if found is not None:
+        voice.show(inspect_document(found, file), table(backup_rows(found, str(file))))
+    else:
+        voice.show(project_document(on_file), table(project_rows(on_file)))
 
 
 def backup_rows(found: Backup, file: str) -> Iterator[tuple[str, object]]:
@@ -55,14 +62,7 @@ def backup_rows(found: Backup, file: str) -> Iterator[tuple[str, object]]:
     header = program.header
     yield "header", header.text()
     if header.checksum is not None:
-        yield "checksum", _sum_words(header.checksum)
+        yield "checksum", sum_words(header.checksum)
     yield "ladder size", f"{program.ladder_words} words, {len(program.pages)} pages, {used} not empty"
     yield "passes", f"{found.passes}, equal" if found.passes > 1 else "1, not compared"
     yield "sha256", program.sha256
-
-
-def _sum_words(found: Sum) -> str:
-    if found.valid:
-        return f"{found.stored:04X}, holds"
-    computed = "not to be computed" if found.computed is None else f"the code's is {found.computed:04X}"
-    return f"{found.stored:04X}, DOES NOT HOLD: {computed}"

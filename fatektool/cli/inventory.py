@@ -61,7 +61,7 @@ def check_command(inventory: Path | None, voice: Voice) -> int:
 def _faults_of_files(found: Inventory) -> Iterator[Fault]:
     """What is wrong with the files that the PLCs name; each file is told of once."""
     from fatektool.jobs.snapshot_spec import MAX_SPEC, parse_spec
-    from fatektool.program.archive import load_backup
+    from fatektool.project.program_file import load_program
 
     seen: set[Path] = set()
     for entry in found.plcs.values():
@@ -73,7 +73,7 @@ def _faults_of_files(found: Inventory) -> Iterator[Fault]:
                 if key == "spec":
                     parse_spec(read_bounded(path, MAX_SPEC), str(path))
                 else:
-                    load_backup(path)
+                    load_program(path)
             except FatektoolError as error:
                 yield Fault(None, f"plc.{entry.name}: {key}: {error.message}")
 

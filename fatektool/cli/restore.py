@@ -22,9 +22,10 @@ from fatektool.jobs.restore import (
     keep_way_back,
     plan_restore,
 )
-from fatektool.program.archive import load_backup
-from fatektool.program.files import require_folder
+from fatektool.program.archive import LARGEST_FILE, Backup
+from fatektool.program.files import read_bounded, require_folder
 from fatektool.program.image import ranges
+from fatektool.project.records import is_project
 from fatektool.protocol.commands import Command
 
 if TYPE_CHECKING:
@@ -69,7 +70,7 @@ def restore_command(
     back. A restore that was interrupted is finished by the same command.
     """
     apart("no_safety_backup", "rollback", "safety_dir")
-    backup = load_backup(file)
+    backup = _backup_in(file)
     folder = None if no_safety_backup else require_folder(safety_dir or file.parent)
     options = RestoreOptions(stop, run, changed_only, rollback, any_header, single_pass)
     with (
@@ -100,6 +101,23 @@ def restore_command(
             plc, file, result, dry_run=dry_run, pages_to_write=len(plan.pages), duration_s=duration_s
         )
     voice.show(document, _lines(plan, result, file, dry_run=dry_run, way_back=folder is not None))
+
+
+def _backup_in(file: Path) -> Backup:
+    """The backup to restore.
+
+    Raises:
+        UsageError: it is a project of the vendor's program.
+    """
+    data = read_bounded(file, LARGEST_FILE)
+    if is_project(data):
+        raise UsageError(
+            f"{file} is a WinProladder project, and restore takes backups alone: what WinProladder changes "
+            "when it loads a project into a PLC is not known",
+            hint="load it with WinProladder; 'fatektool verify' and 'diff' compare a project",
+            file=str(file),
+        )
+    return Backup.parse(data, str(file))
 
 
 def _agree(

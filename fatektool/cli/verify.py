@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fatektool.cli.differences import difference_lines
+from fatektool.cli.differences import program_lines
 from fatektool.cli.documents import verify_document
 from fatektool.cli.options import PATH, Connection, connection_options
+from fatektool.cli.program_files import program_file
 from fatektool.cli.report import report_option, write_report
-from fatektool.jobs.verify import verify
-from fatektool.program.archive import load_backup
+from fatektool.jobs.verify import verify_file
 from fatektool.protocol.commands import Command
 
 if TYPE_CHECKING:
@@ -25,23 +25,23 @@ if TYPE_CHECKING:
 @report_option
 @connection_options
 def verify_command(connection: Connection, voice: Voice, *, file: Path, report: Path | None) -> int:
-    """Compare the PLC's program with the backup FILE: exit 0 if they are the same, 1 if not.
+    """Compare the PLC's program with FILE, a backup or a WinProladder project: exit 0 if the same, 1 if not.
 
     What seems to differ is read twice. The PLC may run.
     """
-    backup = load_backup(file)
+    on_file = program_file(file, voice)
     with connection.open(voice, needs=(Command.READ_PAGE,)) as plc, voice.progress() as bar:
         clock = plc.link.transport.clock
         began = clock()
-        found = verify(plc, backup.program, progress=bar.update)
-        document = verify_document(plc, file, backup.program, found, clock() - began)
-    same = f"same: the PLC's program is the one in {file}, {len(backup.program.pages)} pages"
-    if found.b_has_more:
-        count = len(backup.program.pages)
+        found = verify_file(plc, on_file, progress=bar.update)
+        document = verify_document(plc, file, on_file.sha256, found, clock() - began)
+    count = len(found.a.pages)
+    same = f"same: the PLC's program is the one in {file}, {count} pages"
+    if found.pages.b_has_more:
         voice.warn(f"the PLC has more than the {count} pages of {file}: page {count} and on are not compared")
-    voice.show(document, difference_lines(found, same, "file", "PLC"))
+    voice.show(document, program_lines(found, same, "file", "PLC"))
     if report is not None:
         from fatektool.report.program import verify_report
 
-        write_report(report, verify_report(document, backup.program))
+        write_report(report, verify_report(document, found.a))
     return 0 if found.same else 1

@@ -6,9 +6,10 @@ import threading
 import time
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from itertools import islice
 from typing import TYPE_CHECKING, Final
 
-from fatektool.errors import FatektoolError, UsageError
+from fatektool.errors import DataError, FatektoolError, UsageError
 from fatektool.history.names import require_name
 from fatektool.history.packing import is_due, pack_loose
 from fatektool.history.recording import Recorded, look, unchanged, write
@@ -208,6 +209,22 @@ class History:
             data = repository.read(blob, "blob")
             recorded, _ = next(changes_of(name, repository, commit.revision), (commit, blob))
             return Stored(name, recorded, data, Backup.parse(data, f"{name}@{commit.revision[:SHORT]}"))
+
+    def before(self, found: Stored) -> Backup | None:
+        """The backup that the history held of a PLC before this one; None if there is none that can be read.
+
+        Raises:
+            DataError: the history is damaged.
+        """
+        with Repository(self.folder) as repository:
+            changes = changes_of(found.name, repository, found.commit.revision)
+            _, blob = next(islice(changes, 1, None), (None, None))
+            if blob is None:
+                return None
+            try:
+                return Backup.parse(repository.read(blob, "blob"), found.name)
+            except DataError:  # 'history check' names it
+                return None
 
     def diff(self, name: str, a: str = "~1", b: str = "HEAD") -> Comparison:
         """A PLC's program at two revisions; by default, its last change.

@@ -2,8 +2,9 @@
 
 ::
 
-    press-3: 4 words in 2 pages changed
+    press-3: N0009 changed, N0031 added (4 words in 2 pages)
 
+    networks N0009 changed, N0031 added
     pages    3, 5
     sha256   1cfe93ed… before
     sha256   9a0b5c1d… after
@@ -29,12 +30,15 @@ if TYPE_CHECKING:
     from fatektool.program.compare import Comparison
 
 
-def subject(name: str, found: Comparison | None, *, damaged: bool = False) -> str:
+def subject(
+    name: str, found: Comparison | None, networks: str | None = None, *, damaged: bool = False
+) -> str:
     """The message's first line.
 
     Args:
         name: the PLC.
         found: the old program against the new one; None if there is no old one.
+        networks: the networks that differ, in words; None where a program has no mnemonics.
         damaged: True if there is one, and it cannot be read.
     """
     if found is None:
@@ -43,10 +47,13 @@ def subject(name: str, found: Comparison | None, *, damaged: bool = False) -> st
         size = f"ladder size {found.a_ladder_words} -> {found.b_ladder_words} words, "
     else:
         size = ""
-    return f"{name}: {size}{count(found.word_count, 'word')} in {count(len(found.pages), 'page')} changed"
+    words = f"{count(found.word_count, 'word')} in {count(len(found.pages), 'page')}"
+    return f"{name}: {size}{words} changed" if networks is None else f"{name}: {size}{networks} ({words})"
 
 
-def message(first_line: str, found: Comparison | None, old: Backup | None, new: Backup) -> bytes:
+def message(
+    first_line: str, found: Comparison | None, old: Backup | None, new: Backup, networks: str | None = None
+) -> bytes:
     """The whole message.
 
     Args:
@@ -54,10 +61,13 @@ def message(first_line: str, found: Comparison | None, old: Backup | None, new: 
         found: the old program against the new one; None if there is no old one.
         old: the backup before; None if there is none to read.
         new: the backup that is recorded.
+        networks: all networks that differ, in words; None where a program has no mnemonics.
     """
     source = new.source
     line = f", {source.line}" if source.line else ""
     rows = []
+    if networks is not None:
+        rows.append(("networks", networks))
     if found is not None and old is not None:
         rows += [("pages", ranges(found.page_numbers)), ("sha256", f"{old.program.sha256} before")]
     rows += [

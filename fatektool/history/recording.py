@@ -23,11 +23,18 @@ from fatektool.history.loose import hash_of, write_loose
 from fatektool.history.repository import Newest
 from fatektool.history.trees import entries, file_in, files, with_file
 from fatektool.history.writing import Branch, move_branch
+from fatektool.ladder.differences import compare_code, summary
+from fatektool.ladder.image import code_of
 from fatektool.program.archive import Backup
 from fatektool.program.compare import Comparison, compare
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from fatektool.history.repository import Repository
+    from fatektool.ladder.differences import NetworkChange
+
+_MOST_NETWORKS = 1000
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,18 +124,29 @@ def write(
         found = seen if seen is not None and seen.newest.tip == tip else look(repository, name, backup)
         if found.same:
             return unchanged(name, found)
-        subject = messages.subject(name, found.changes, damaged=bool(found.warnings))
+        networks = _networks(found.old, backup)
+        few = None if networks is None else summary(networks) or "same code"
+        subject = messages.subject(name, found.changes, few, damaged=bool(found.warnings))
         blob, tree = _new_file(repository, found.newest.tree, name, backup)
         put = partial(write_loose, repository.folder, rights=repository.rights)
         put("blob", blob)
         commit = _commit(put("tree", tree), found.newest.tip, name, backup, now)
-        commit.message = messages.message(subject, found.changes, found.old, backup)
+        every = None if networks is None else summary(networks, _MOST_NETWORKS) or "same code"
+        commit.message = messages.message(subject, found.changes, found.old, backup, every)
         new = put("commit", commit.as_raw_string())
         still = partial(_is_tip, repository, found.newest.tip)
         branch = Branch(repository.folder, repository.branch(), repository.rights)
         if move_branch(branch, new, still, wait_s=wait_s):
             repository.is_now(Newest(new, tree))
             return Recorded(name, new, subject, found.changes, found.warnings)
+
+
+def _networks(old: Backup | None, new: Backup) -> Sequence[NetworkChange] | None:
+    """The networks that differ; None if there is no old program, or one of them has no mnemonics."""
+    if old is None:
+        return None
+    before, now = code_of(old.program), code_of(new.program)
+    return None if before is None or now is None else compare_code(before, now)
 
 
 def _is_tip(repository: Repository, tip: str | None) -> bool:

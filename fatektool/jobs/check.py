@@ -29,8 +29,9 @@ from typing import TYPE_CHECKING, Final
 from fatektool.errors import DataError, FatektoolError, LineError, PortBusy, UsageError
 from fatektool.jobs.progress import Progress, no_progress
 from fatektool.jobs.safekeeping import age_s, require_ladder
-from fatektool.jobs.verify import verify
+from fatektool.jobs.verify import verify_file
 from fatektool.program.archive import load_backup
+from fatektool.project.program_file import load_program
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fatektool.client import Plc
-    from fatektool.program.image import Program
+    from fatektool.project.program_file import ProgramFile
     from fatektool.protocol.status import StatusFlags
 
 _AGE: Final = re.compile(r"(\d{1,9}(?:\.\d{1,3})?)([smhd])", re.ASCII)
@@ -122,7 +123,7 @@ def check_plc(
         plc: the PLC.
         found: takes the facts.
         expect: ``run``, ``stop`` or ``any``.
-        reference: the backup whose program ought to be in it; None for none.
+        reference: the backup or project whose program ought to be in it; None for none.
         progress: told of each page.
 
     Raises:
@@ -152,18 +153,20 @@ def check_plc(
     if reference is None:
         return
     try:
-        program = load_backup(reference).program
+        program = load_program(reference)
     except (DataError, UsageError) as error:
         found.add(State.UNKNOWN, f"program NOT COMPARED: {error.message}")
         return
     _compare(plc, found, str(reference), program, progress)
 
 
-def _compare(plc: Plc, found: Checked, name: str, program: Program, progress: Progress) -> None:
-    different = verify(plc, program, progress=progress)
+def _compare(plc: Plc, found: Checked, name: str, program: ProgramFile, progress: Progress) -> None:
+    compared = verify_file(plc, program, progress=progress)
+    different = compared.pages
     found.differs = not different.same
     pages = len(different.pages)
     found.figures["words_differ"] = str(different.word_count)
+    networks = "" if compared.networks_summary is None else f"{compared.networks_summary}, "
     if different.same:
         found.add(None, f"program as in {name}")
     elif different.a_ladder_words != different.b_ladder_words:
@@ -171,7 +174,7 @@ def _compare(plc: Plc, found: Checked, name: str, program: Program, progress: Pr
     else:
         found.add(
             State.CRITICAL,
-            f"program DIFFERS from {name}: {different.word_count} words in {pages} pages",
+            f"program DIFFERS from {name}: {networks}{different.word_count} words in {pages} pages",
         )
 
 

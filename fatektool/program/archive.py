@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 SCHEMA: Final = "fatektool.backup/1"
 LARGEST_FILE: Final = 4 << 20  # the largest image takes 270 kB
 _PAGE: Final = re.compile(r"[0-9A-Fa-f]{256}", re.ASCII)
+_PROJECT: Final = b"Fatek WinProladder"
 _TIME: Final = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?Z", re.ASCII)
 
 
@@ -142,6 +143,11 @@ def load_backup(path: Path) -> Backup:
 
 
 def _json(data: bytes, name: str) -> dict[str, Any]:
+    if data.startswith(_PROJECT):
+        raise DataError(
+            f"{name}: a WinProladder project, expected a backup of a PLC",
+            hint="inspect, listing, xref, diff and verify take a project, too",
+        )
     try:
         document = read_json(data)
     except ValueError as error:  # UnicodeDecodeError and JSONDecodeError among them

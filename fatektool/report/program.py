@@ -89,6 +89,8 @@ def _report(
     ]
     pages = _pages(document, programs)
     sections = [_map(document, pages)]
+    if document["networks"]:
+        sections.append(_networks(document["networks"]))
     if document["differences"]:
         sections += [_changes(document, sides), _words(document, programs, sides)]
     return render(
@@ -139,6 +141,22 @@ def _map(document: Mapping[str, Any], pages: int) -> Html:
     said = "The program's header comes first. A page is 64 words."
     drawn = page_map("map", "The program's pages", pages, changed)
     return section("Map of the pages", tag("p", said), tag("figure", drawn))
+
+
+def _networks(networks: Sequence[Mapping[str, Any]]) -> Html:
+    """The networks that differ, their instructions as in a unified diff."""
+    return section("Networks that differ", *(_network(network) for network in networks), id_="networks")
+
+
+def _network(network: Mapping[str, Any]) -> Html:
+    numbers = [f"N{network[side]:04}" for side in ("a", "b") if network[side] is not None]
+    name = f"{' → '.join(dict.fromkeys(numbers))} {network['change']}"
+    signs = {"-": "removed", "+": "added", " ": "as before"}
+    rows = [
+        (signs[line[0]], tag("mark", tag("code", line[1:])) if line[0] != " " else tag("code", line[1:]))
+        for line in network["lines"]
+    ]
+    return table(name, ("Change", "Instruction"), rows)
 
 
 def _changes(document: Mapping[str, Any], sides: tuple[str, str]) -> Html:

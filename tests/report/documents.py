@@ -6,9 +6,9 @@ import math
 from random import Random
 from typing import Any
 
-from fatektool.cli.documents import differences
-from fatektool.program.compare import compare
+from fatektool.cli.documents import program_differences
 from fatektool.program.image import Program
+from fatektool.project.comparison import compare_programs
 from fatektool.report.loopback import loopback_report
 from fatektool.report.program import diff_report, verify_report
 from fatektool.report.rounds import Rounds
@@ -102,7 +102,7 @@ def verified(a: Program, b: Program, **other: Any) -> dict[str, Any]:
         "file": "press.json",
         "sha256": a.sha256,
         "duration_s": 0.5,
-        **differences(compare(a, b)),
+        **program_differences(compare_programs(a, b)),
         **other,
     }
     check(document, "verify")
@@ -114,7 +114,7 @@ def diffed(a: Program, b: Program, *, check_it: bool = True) -> dict[str, Any]:
         "schema": "fatektool.diff/1",
         "a": {"file": "monday.json", "sha256": a.sha256},
         "b": {"file": "tuesday.json", "sha256": b.sha256},
-        **differences(compare(a, b)),
+        **program_differences(compare_programs(a, b)),
     }
     if check_it:
         check(document, "diff")
