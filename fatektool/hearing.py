@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from fatektool.transport.base import Transport
 
 _READ_BYTES: Final = 4096
-_MOST_OWED: Final = 64
+_MOST_OWED: Final = 16
 
 
 class Awaited(NamedTuple):
@@ -128,7 +128,8 @@ class Hearing:
     def _owe(self, *, waited_for: bool) -> None:
         self.doubt = True
         if self._awaited is not None:
-            self._owed.append(self._awaited._replace(waited_for=waited_for))
+            sent, since, _ = self._awaited
+            self._owed.append(Awaited(sent._replace(raw=b""), since, waited_for))
             self._awaited = None
 
     def bad_bytes(self, error: FrameError) -> None:

@@ -108,6 +108,7 @@ class Link:
         self.warn = warn
         self.echoes: bool | None = None
         self.begin_with_echo()
+        self.patient = True  # False where every answer is to have the same time
         self._late_told_s = 0.0
         self.answered: set[int] = set()  # commands
         self._attempts = Attempts(self)
@@ -269,7 +270,7 @@ class Link:
     def wait_s(self) -> float:
         """How long an answer is waited for, beside wire time: longer where answers were seen to come late."""
         late_s = self.hearing.late_s
-        if not late_s:
+        if not late_s or not self.patient:
             return self.timeout_s
         return min(max(self.timeout_s, ROOM * late_s), MOST_PATIENCE * self.timeout_s)
 

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 
     from fatektool.client import Plc
     from fatektool.jobs.doctor import Examination
+    from fatektool.jobs.enough_time import EnoughTime
     from fatektool.jobs.finding import Finding
     from fatektool.jobs.loopback_result import LoopbackResult, Tally
     from fatektool.jobs.raw_frame import RawFrame
@@ -101,7 +102,28 @@ def doctor_document(plc: Plc, found: Examination) -> dict[str, Any]:
             "turnaround_ms": found.loopback.turnaround.summary_ms(),
             "duration_s": round(found.loopback.duration_s, 3),
         },
+        "enough_time": None if found.enough is None else _enough(found.enough),
+        "searched": None if found.searched is None else _searched(found.searched),
         "elsewhere": [station_document(station) for station in found.elsewhere],
+    }
+
+
+def _enough(enough: EnoughTime) -> dict[str, Any]:
+    return {
+        "timeout_s": enough.timeout_s,
+        "proven": enough.proven,
+        "sent": enough.sent,
+        "ok": enough.ok,
+        "slowest_s": round(enough.slowest_s, 3),
+    }
+
+
+def _searched(result: ScanResult) -> dict[str, Any]:
+    return {
+        "tried": [str(setting.line) for setting in result.tried],
+        "refused": [str(setting.line) for setting in result.refused],
+        "out_of_time": result.out_of_time,
+        "duration_s": round(result.duration_s, 3),
     }
 
 
@@ -119,6 +141,7 @@ def scan_document(head: dict[str, Any], result: ScanResult, *, serial: bool) -> 
         "probes": result.probes,
         "duration_s": round(result.duration_s, 3),
         "interrupted": result.interrupted,
+        "refused": [_setting(setting, serial=serial) for setting in result.refused],
         "found": [station_document(station, serial=serial) for station in result.found],
         "unclear": [_unclear(place, serial=serial) for place in result.unclear],
     }
@@ -133,6 +156,8 @@ def station_document(found: Station, *, serial: bool = True) -> dict[str, Any]:
         "running": None if brief is None else brief.flags.running,
         "model": None if brief is None else brief.model,
         "latency_ms": None if found.latency_s is None else round(found.latency_s * 1000, 3),
+        "late": found.late,
+        "any_number": found.any_number,
     }
 
 

@@ -14,6 +14,8 @@ from fatektool.cli.pairs import apart, together
 from fatektool.errors import UsageError
 from fatektool.jobs.scan import ScanResult, Setting, scan
 from fatektool.jobs.times import utc
+from fatektool.protocol.line_settings import BAUDS, FORMATS
+from fatektool.silence import longer_timeout
 from fatektool.transport.base import LineSettings
 
 if TYPE_CHECKING:
@@ -51,6 +53,14 @@ class Stations(click.ParamType):  # type: ignore[type-arg]  # a generic in the n
         return tuple(found)
 
 
+class Bauds(Several):
+    """Numbers with commas between them, or ``all``."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Read them."""
+        return BAUDS if value == "all" else super().convert(value, param, ctx)
+
+
 @click.command(
     "scan",
     epilog="Example: fatektool scan --bauds 9600,19200,38400 --formats 7E1,8N1 -p /dev/ttyUSB0",
@@ -63,7 +73,10 @@ class Stations(click.ParamType):  # type: ignore[type-arg]  # a generic in the n
     help="Which; the first is tried everywhere first.",
 )
 @click.option(
-    "--bauds", type=Several(click.INT), metavar="N,…", help="Speeds to try.  [default: that of --baud]"
+    "--bauds",
+    type=Bauds(click.INT),
+    metavar="N,…",
+    help="Speeds to try; 'all' for those that FATEK has.  [default: that of --baud]",
 )
 @click.option(
     "--formats",
@@ -172,7 +185,7 @@ def _line(found: Station, *, serial: bool) -> str:
     row = station_document(found, serial=serial)
     line = f"{row['baud']} {row['format']}  " if serial else ""
     mode = {True: "RUN", False: "STOP", None: "mode unknown"}[row["running"]]
-    took = "late" if row["latency_ms"] is None else f"{row['latency_ms']:.1f} ms"
+    took = "late" if row["latency_ms"] is None else f"{row['latency_ms']:.1f} ms{', late' * row['late']}"
     model = row["model"] or "model unknown"
     return f"station {row['station']:>3}  {line}{row['protocol']}  {mode}  {model}  {took}"
 
@@ -190,6 +203,19 @@ def _parts(result: ScanResult) -> Iterator[str]:
         named = ", ".join(map(str, places[:5])) + (", …" if len(places) > 5 else "")
         yield f"something that is no frame was heard from station {named}: another speed, format or protocol?"
     elif not count:
-        yield "is the PLC on, the cable in? try --bauds 9600,19200,38400,57600,115200 --formats 7E1,8N1,8E1"
+        yield f"is the PLC on, the cable in? try --bauds all --formats {','.join(FORMATS)}"
+    if result.refused:
+        lines = dict.fromkeys(str(setting.line) for setting in result.refused)
+        yield f"this port does not take {', '.join(lines)}"
+    for found in result.found:
+        if found.any_number:
+            yield (
+                f"what answers as station {found.station} answers every number: it is one PLC, whose port "
+                "does not check the station (low byte of R4149 for port 0, R4155 for ports 1 and 2, R4156 "
+                "for 3 and 4 is 1; for a line of several PLCs write 0 there)"
+            )
+    late_s = [found.latency_s for found in result.found if found.late and found.latency_s is not None]
+    if late_s:
+        yield f"answers came late, after {max(late_s):.2g} s: give --timeout {longer_timeout(max(late_s)):g}"
     if result.interrupted:
         yield "interrupted"

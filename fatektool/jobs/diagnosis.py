@@ -12,11 +12,13 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 from fatektool.jobs.evidence import answers_heard, damaged, framed_with_parity, grows, sample
 from fatektool.jobs.finding import Case, Finding
 from fatektool.jobs.raw_rules import raw_altered, raw_echo, raw_nothing_right, raw_silence, raw_twice
+from fatektool.silence import longer_timeout
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
 _SLOW_S: Final = 0.1
+SLOW_PLC: Final = "slow-plc"
 
 
 def diagnose(case: Case) -> list[Finding]:
@@ -180,15 +182,24 @@ def _slow(case: Case) -> Finding | None:
     late = result.heard.late
     if result.heard.steps.seen or (not late and (p50_ms is None or p50_ms < _SLOW_S * 1000)):
         return None
-    heard = f"half of the answers take {p50_ms:g} ms or more beside wire time; " if p50_ms is not None else ""
+    heard = f"half of the answers take {p50_ms:.4g} ms or more beside wire time" if p50_ms is not None else ""
+    if late:
+        latest = f", the latest took {result.heard.late_s:.2g} s" if result.heard.late_s else ""
+        heard += f"{'; ' if heard else ''}{late} came after --timeout {result.timeout_s:g}{latest}"
     return Finding(
-        "slow-plc",
+        SLOW_PLC,
         fault=late > 0,
         finding="the PLC answers late" if late else "the PLC takes its time: a long scan, or a slow gateway",
-        evidence=f"{heard}{late} answers came after --timeout {result.timeout_s:g}",
-        advice=f"give --timeout {max(1.0, 2 * result.timeout_s):g} with every command"
-        if late
-        else "nothing need be done; the PLC answers once a scan",
+        evidence=heard,
+        advice=_longer(result.heard.late_s) if late else "nothing need be done; the PLC answers once a scan",
+    )
+
+
+def _longer(late_s: float) -> str:
+    return (
+        f"give --timeout {longer_timeout(late_s):g} with every command"
+        if late_s
+        else "give a longer --timeout"
     )
 
 

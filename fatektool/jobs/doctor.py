@@ -12,12 +12,14 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import LineError, PlcError, TransportClosed
-from fatektool.jobs.diagnosis import diagnose
+from fatektool.jobs.diagnosis import SLOW_PLC, diagnose
+from fatektool.jobs.enough_time import EnoughTime, find_enough_time
 from fatektool.jobs.finding import Case, Finding
 from fatektool.jobs.high_speed import high_speed_findings
 from fatektool.jobs.loopback import run_loopback
 from fatektool.jobs.loopback_result import LoopbackPlan
-from fatektool.jobs.scan import Setting, Station, scan
+from fatektool.jobs.scan import ScanResult, Setting, Station, scan
+from fatektool.protocol.line_settings import BAUDS, FORMATS
 from fatektool.transport.base import LineSettings
 
 if TYPE_CHECKING:
@@ -29,8 +31,7 @@ if TYPE_CHECKING:
 
 FIRST_LOOK: Final = LoopbackPlan(count=6, max_error_rate=1.0)
 SHORT_TEST: Final = LoopbackPlan(count=120, duration_s=10.0)
-BAUDS: Final = (9600, 19200, 38400, 57600, 115200, 4800)
-FORMATS: Final = ("7E1", "8N1", "8E1")
+LONGEST_SEARCH_S: Final = 60.0
 FACTORY_STATION: Final = 1
 
 
@@ -42,13 +43,20 @@ class Examination:
         loopback: the test's figures.
         brief: the PLC's brief status; None if it gave none.
         findings: what the rules say.
-        elsewhere: PLCs that answered at another speed, format or station.
+        searched: the search for PLCs at another speed, format or station; None if there was no need of it.
+        enough: the time-out that a PLC needs whose answers come late; None if none did.
     """
 
     loopback: LoopbackResult
     brief: BriefStatus | None = None
     findings: list[Finding] = field(default_factory=list)
-    elsewhere: list[Station] = field(default_factory=list)
+    searched: ScanResult | None = None
+    enough: EnoughTime | None = None
+
+    @property
+    def elsewhere(self) -> list[Station]:
+        """Who was found by the search."""
+        return [] if self.searched is None else self.searched.found
 
     @property
     def healthy(self) -> bool:
@@ -68,13 +76,22 @@ def examine(plc: Plc, on_step: Callable[[str, int, int], object] = lambda *_: No
     """
     link = plc.link
     result = run_loopback(plc, FIRST_LOOK, _told(on_step, FIRST_LOOK))
-    if result.total.ok and result.ended == "count":
+    enough, late = None, []
+    if result.heard.late_s and result.ended == "count":
+        given_s = link.timeout_s
+        on_step("longer time-out", 0, 1)
+        enough = find_enough_time(plc, result.heard.late_s)
+        late.append(_answers_late(enough, result, given_s))
+    if (result.total.ok or (enough and enough.ok)) and result.ended == "count":
         result = run_loopback(plc, SHORT_TEST, _told(on_step, SHORT_TEST))
     if result.ended == "interrupted":
         raise KeyboardInterrupt
     if result.lost is not None:
         raise TransportClosed(result.lost)
-    found = Examination(result, findings=diagnose(Case(result, link.line, link.station, link.codec)))
+    said = diagnose(Case(result, link.line, link.station, link.codec))
+    if enough is not None:  # which knows more of it
+        said = late + [each for each in said if each.rule != SLOW_PLC]
+    found = Examination(result, findings=said, enough=enough)
     if result.total.ok:
         try:
             found.brief = plc.brief_status()
@@ -92,7 +109,7 @@ def examine(plc: Plc, on_step: Callable[[str, int, int], object] = lambda *_: No
             found.findings += _of_flags(found.brief)
             found.findings += high_speed_findings(plc)
     elif link.transport.line is not None:
-        found.elsewhere = _look_elsewhere(plc, on_step)
+        found.searched = _look_elsewhere(plc, on_step)
         found.findings += [_answers_elsewhere(station) for station in found.elsewhere]
     return found
 
@@ -103,10 +120,28 @@ def _told(
     return lambda result: on_step("loopback", result.total.sent, plan.count or 0)
 
 
-def _look_elsewhere(plc: Plc, on_step: Callable[[str, int, int], object]) -> list[Station]:
-    """Try the usual settings; the line is left as it was."""
+def _answers_late(enough: EnoughTime, seen: LoopbackResult, given_s: float) -> Finding:
+    advice = f"give --timeout {enough.timeout_s:g} with every command"
+    if not enough.proven:
+        advice = (
+            f"even with --timeout {enough.timeout_s:g} only {enough.ok} of {enough.sent} came back: "
+            "look for what holds the PLC or the gateway up"
+        )
+    return Finding(
+        SLOW_PLC,
+        fault=True,
+        finding="the PLC answers late",
+        evidence=f"{seen.heard.late} answers came after --timeout {given_s:g}; with {enough.timeout_s:g} s "
+        f"{enough.ok} of {enough.sent} came back, the slowest after {enough.slowest_s:.2f} s",
+        advice=advice,
+    )
+
+
+def _look_elsewhere(plc: Plc, on_step: Callable[[str, int, int], object]) -> ScanResult:
+    """Try all speeds that these PLCs have, for a bounded time; the line is left as it was."""
     link = plc.link
-    settings = [Setting(link.codec, LineSettings(baud, form)) for baud in BAUDS for form in FORMATS]
+    carried = [form for form in FORMATS if int(form[0]) >= (link.codec.data_bits or 0)]
+    settings = [Setting(link.codec, LineSettings(baud, form)) for form in carried for baud in BAUDS]
     try:
         result = scan(
             link.transport,
@@ -115,13 +150,14 @@ def _look_elsewhere(plc: Plc, on_step: Callable[[str, int, int], object]) -> lis
             timeout_s=link.timeout_s,
             retries=0,
             most=1,
+            longest_s=LONGEST_SEARCH_S,
             on_probe=lambda done, total: on_step("other settings", done, total),
         )
     finally:
         link.transport.set_line(link.line)
     if result.interrupted:
         raise KeyboardInterrupt
-    return result.found
+    return result
 
 
 def _answers_elsewhere(found: Station) -> Finding:

@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from fatektool.link import Link
 
 _FASTER_THAN_WIRE: Final = 0.9
+_LISTENED_S: Final = 2.0
 
 
 def run_loopback(
@@ -56,12 +57,13 @@ def run_loopback(
     test = _Test(plc.link, plan)
     try:
         test.run(on_exchange)
+        test.wait_for_the_last()
     except KeyboardInterrupt:
         test.result.ended = "interrupted"
     except TransportClosed as error:
         test.result.ended, test.result.lost = "line lost", str(error)
     finally:
-        test.measure()
+        test.end()
     return test.result
 
 
@@ -101,6 +103,18 @@ class _Test:
             if on_exchange is not None:
                 self.measure()
                 on_exchange(result)
+
+    def wait_for_the_last(self) -> None:
+        """What is not answered yet may come late, and is no loss then."""
+        if self.result.plan.raw is not None or not self._exchanger.unanswered:
+            return  # of a frame of one's own nothing tells what it answers
+        if self.result.heard.late or not self._exchanger.bytes_heard:
+            self._exchanger.listen_until(self._clock() + min(3 * self.result.timeout_s, _LISTENED_S))
+
+    def end(self) -> None:
+        """No exchange comes any more."""
+        self.measure()
+        self._exchanger.end()
 
     def measure(self) -> None:
         """Bring the figures up to date that are not counted by exchange."""

@@ -63,6 +63,10 @@ class Exchanger(ABC):
         """Learn what must be known before the first exchange."""
 
     @abstractmethod
+    def end(self) -> None:
+        """The test is over."""
+
+    @abstractmethod
     def frame_bytes(self, data: bytes) -> int:
         """How many bytes carry these characters, one way."""
 

@@ -42,7 +42,9 @@ class PlcExchanger(Exchanger):
         return self._link.echoes
 
     def begin(self) -> None:
-        """Learn whether the line echoes."""
+        """Learn whether the line echoes. From now on every answer has the same time."""
+        self._link.patient = False
+        self._link.hearing.late_s = 0.0
         self._learn_echo()
 
     def _learn_echo(self) -> bool | None:
@@ -59,6 +61,10 @@ class PlcExchanger(Exchanger):
             break
         return self._link.echoes
 
+    def end(self) -> None:
+        """The next one may be given more time again."""
+        self._link.patient = True
+
     def frame_bytes(self, data: bytes) -> int:
         """How many bytes carry these characters, one way."""
         return self._link.codec.answer_bytes(Loopback(data))
@@ -70,7 +76,6 @@ class PlcExchanger(Exchanger):
     def ready(self) -> None:
         """Look at what lies in the input."""
         self._link.hearing.drop_input()
-        self._link.hearing.late_s = 0.0  # a test gives every answer the same time
         self._seen.clear()
 
     def _try(self, data: bytes) -> str | None:
@@ -111,6 +116,7 @@ class PlcExchanger(Exchanger):
                 heard.twice += 1
             else:
                 heard.late += 1
+                heard.late_s = max(heard.late_s, self._link.hearing.late_s)
             self._seen.add("stale")
         else:
             self._seen.add("mismatch")

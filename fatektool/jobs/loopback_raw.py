@@ -43,6 +43,9 @@ class RawExchanger(Exchanger):
     def begin(self) -> None:
         """Nothing can be learnt of the line before the first exchange."""
 
+    def end(self) -> None:
+        """Nothing was set."""
+
     def frame_bytes(self, data: bytes) -> int:
         """How many bytes carry these characters, one way."""
         return len(self._frame.wrap(data))

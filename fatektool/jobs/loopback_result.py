@@ -121,6 +121,7 @@ class Heard:
     Attributes:
         twice: answers that came a second time.
         late: answers that came after their exchange was given up.
+        late_s: the longest that one of those took, beside wire time; 0 if that is not known.
         foreign: good frames of other stations, by station.
         noise_bytes: bytes that were no frame.
         noise: the first of them.
@@ -130,6 +131,7 @@ class Heard:
 
     twice: int = 0
     late: int = 0
+    late_s: float = 0.0
     foreign: dict[int, int] = field(default_factory=dict)
     noise_bytes: int = 0
     noise: bytes = b""

@@ -39,7 +39,7 @@ from fatektool.simulator.facon_fields import VALUE_CHARACTERS, Fields, hex_value
 from fatektool.simulator.memory import DiscreteAction
 from fatektool.simulator.models import PAGE_BYTES
 from fatektool.simulator.refusal import Refusal, RefusalCode
-from fatektool.simulator.slave import BROADCAST, Request, RequestKind
+from fatektool.simulator.slave import BROADCAST, Request, RequestKind, addressed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -96,8 +96,8 @@ class FaconSlave:
             for plc in self.plcs.values():
                 self._execute(plc, request)
             return None
-        addressed = self.plcs.get(request.station)
-        return None if addressed is None else self._execute(addressed, request)
+        here = addressed(self.plcs, request.station)
+        return None if here is None else self._execute(here, request)
 
     def readdressed(self, answer: bytes, station: int) -> bytes:
         """The same answer as another station would send it, its LRC right."""

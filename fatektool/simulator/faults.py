@@ -34,7 +34,7 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from fatektool.errors import UsageError
-from fatektool.simulator.slave import BROADCAST, Request, RequestKind, Slave
+from fatektool.simulator.slave import BROADCAST, Request, RequestKind, Slave, addressed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -155,21 +155,21 @@ class Faults:
         """Have ``request`` executed, or not: the power may go, a write may be a lie."""
         if request.kind in {RequestKind.OTHER, RequestKind.LOOPBACK}:
             return slave.answer(request)
-        addressed = slave.plcs.get(request.station)
-        here = addressed is not None or request.station == BROADCAST
+        plc = addressed(slave.plcs, request.station)
+        here = plc is not None or request.station == BROADCAST
         if here and request.kind is RequestKind.PAGE_WRITE:
             self._page_writes += 1
             if self._page_writes == self.plan.power_cut:
                 self.counts[POWER_CUT] += 1
                 self.powered = False
                 return None
-        if addressed is None or not self._strikes("lying-write"):
+        if plc is None or not self._strikes("lying-write"):
             return slave.answer(request)
-        addressed.acknowledge_only = True
+        plc.acknowledge_only = True
         try:
             return slave.answer(request)
         finally:
-            addressed.acknowledge_only = False
+            plc.acknowledge_only = False
 
     def spoil(self, slave: Slave, request: Request, answer: bytes) -> SpoiledAnswer:
         """Do to an answer what was drawn for it."""
@@ -200,7 +200,8 @@ class Faults:
         It is empty for a broadcast, which nobody answers, understood or not.
         """
         broadcast = request.station == BROADCAST
-        if not (broadcast or request.station in slave.plcs) or not self._strikes("wrong-line"):
+        here = broadcast or addressed(slave.plcs, request.station) is not None
+        if not here or not self._strikes("wrong-line"):
             return None
         if broadcast:
             return b""

@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING
 
 from fatektool.simulator.modbus_map import LONG_COUNTER, Piece, pieces
 from fatektool.simulator.refusal import Refusal, RefusalCode
-from fatektool.simulator.slave import BROADCAST, Request, RequestKind
+from fatektool.simulator.slave import BROADCAST, Request, RequestKind, addressed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -81,10 +81,10 @@ class ModbusSlave:
             for plc in self.plcs.values():
                 _execute(plc, request)
             return None
-        addressed = self.plcs.get(request.station)
-        if addressed is None:
+        here = addressed(self.plcs, request.station)
+        if here is None:
             return None
-        return self._framing.sealed(bytes((request.station,)) + _execute(addressed, request), request.raw)
+        return self._framing.sealed(bytes((request.station,)) + _execute(here, request), request.raw)
 
     def readdressed(self, answer: bytes, station: int) -> bytes:
         """The same answer as another station would send it, its checksum right."""

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
 MAX_STATION = 0xFE
+_STATION_CHECK = 4149
 _DETAILED_BYTES = 64
 
 
@@ -213,6 +214,12 @@ class SimulatedPlc:
             self.memory.read_discretes(symbol, address, 1)
         else:
             self.memory.control(action, symbol, address)
+
+    @property
+    def checks_station(self) -> bool:
+        """False while the low byte of R4149 is 1: port 0 answers every number then."""
+        registers = self.memory.registers["R"]
+        return len(registers) <= _STATION_CHECK or registers[_STATION_CHECK] & 0xFF != 1
 
     def read_words(self, symbol: str, address: int, count: int) -> list[int]:
         """Values of consecutive 16- or 32-bit elements."""

@@ -47,6 +47,17 @@ class Request(NamedTuple):
     kind: RequestKind
 
 
+def addressed(plcs: Mapping[int, SimulatedPlc], station: int) -> SimulatedPlc | None:
+    """Who answers under this number: the PLC that has it, else one whose station check is off (R4149).
+
+    A line of the simulator is port 0. Where the low byte of R4149 is 1, that port answers every number.
+    """
+    found = plcs.get(station)
+    if found is not None or station == BROADCAST:
+        return found
+    return next((plc for plc in plcs.values() if not plc.checks_station), None)
+
+
 class Slave(Protocol):
     """One connection's view of the PLCs: a framing buffer of its own over shared PLCs."""
 

@@ -12,6 +12,7 @@ from fatektool.jobs.doctor import Examination, examine
 from fatektool.link import Link
 from fatektool.protocol.elements import Element
 from fatektool.protocol.facon import FACON
+from fatektool.protocol.line_settings import BAUDS
 from fatektool.transport.base import LineSettings
 from tests.line.test_scan import Adjustable, Line
 from tests.plcs import simulated
@@ -128,3 +129,38 @@ def test_a_line_that_is_gone_is_an_error() -> None:
     plc.link.transport.close()
     with pytest.raises(TransportClosed):
         examine(plc)
+
+
+@pytest.mark.parametrize("delay_ms", [550, 700, 900, 1100, 1500, 1900, 3000])
+def test_the_time_out_that_is_recommended_is_proven_by_a_try(delay_ms: int) -> None:
+    bench = simulated(baud=9600, scan_ms=delay_ms)
+    found = examine(bench.plc)
+    assert found.enough is not None
+    assert found.enough.proven
+    assert 1.3 * delay_ms / 1000 < found.enough.timeout_s <= 2 * delay_ms / 1000
+    (late,) = found.findings
+    assert (late.rule, late.fault, found.brief is not None) == ("slow-plc", True, True)
+    assert late.advice == f"give --timeout {found.enough.timeout_s:g} with every command"
+    assert "4 of 4 came back, the slowest after" in late.evidence
+    again = simulated(baud=9600, scan_ms=delay_ms, timeout_s=found.enough.timeout_s)
+    assert all(not finding.fault for finding in examine(again.plc).findings)
+
+
+def test_a_plc_that_is_late_is_not_looked_for_elsewhere() -> None:
+    bench = simulated(baud=9600, scan_ms=900)
+    bench.plc.link.transport.line = "9600 7E1"
+    assert examine(bench.plc).searched is None
+
+
+@pytest.mark.parametrize("baud", BAUDS[1:])
+def test_a_plc_is_found_at_every_speed_that_fatek_has(baud: int) -> None:
+    found = examine(doctored(StatusOnly({1}, baud=baud), 1))
+    assert f"--baud {baud} --format 7E1" in found.findings[-1].advice
+
+
+def test_the_search_ends_and_says_what_was_tried() -> None:
+    found = examine(doctored(StatusOnly(set()), 1))
+    assert found.searched is not None
+    assert {setting.line.baud for setting in found.searched.tried} == set(BAUDS)
+    assert {setting.line.format for setting in found.searched.tried} == {"7E1", "8E1", "8N1"}
+    assert found.searched.duration_s < 62

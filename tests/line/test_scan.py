@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from fatektool.errors import TransportClosed, UsageError
+from fatektool.errors import LineError, TransportClosed, UsageError
 from fatektool.jobs.scan import ScanResult, Setting, Station, scan
 from fatektool.protocol.facon import FACON
+from fatektool.protocol.line_settings import BAUDS
 from fatektool.simulator.build import build_simulation
 from fatektool.transport.base import LineSettings
 from fatektool.transport.memory import MemoryTransport
@@ -82,12 +83,12 @@ def test_it_finds_who_answers() -> None:
     assert found.latency_s == pytest.approx(0.02)
 
 
-def test_silence_costs_its_deadline_and_no_more() -> None:
+def test_silence_costs_its_deadline_and_one_listening_for_what_is_late() -> None:
     line = Line(set())
     result = look(line, stations=tuple(range(1, 255)), timeout_s=0.5)
     wire_s = (8 + 15) * 10 / 9600
     assert len(line.asked) == 254
-    assert 254 * 0.5 <= result.duration_s <= 254 * (wire_s + 0.5) * 1.001
+    assert 254 * 0.5 + 1.5 <= result.duration_s <= 254 * (wire_s + 0.5) * 1.001 + 1.5
 
 
 def test_the_first_station_is_tried_everywhere_then_the_setting_that_answered() -> None:
@@ -102,7 +103,8 @@ def test_the_first_station_is_tried_everywhere_then_the_setting_that_answered() 
 
 def test_a_late_answer_counts_for_the_station_that_gave_it() -> None:
     result = look(Line({2, 3}, after_s=0.17), stations=(1, 2, 3, 4))
-    assert [(found.station, found.latency_s) for found in result.found] == [(2, None), (3, None)]
+    assert [(found.station, found.late) for found in result.found] == [(2, True), (3, True)]
+    assert [found.latency_s for found in result.found] == pytest.approx([0.17, 0.17])
 
 
 def test_noise_is_asked_again_and_told() -> None:
@@ -201,3 +203,94 @@ def test_a_noisy_line_hides_nobody_and_invents_nobody(faults: list[str]) -> None
         retries=8,
     )
     assert [found.station for found in result.found] == [2, 9, 200]
+
+
+# --- a port that answers every number ---------------------------------------------------------------------
+
+
+def test_a_port_that_answers_every_number_is_one_plc() -> None:
+    simulation = build_simulation([3])
+    simulation.plcs[3].write_words("R", 4149, [1])
+    told: list[Station] = []
+    result = scan(
+        MemoryTransport(simulation.line()),
+        [Setting(FACON, FACTORY)],
+        range(1, 255),
+        timeout_s=0.1,
+        on_found=told.append,
+    )
+    (found,) = result.found
+    assert (found.station, found.any_number) == (1, True)
+    assert result.probes == 2 + 4
+    assert [station.station for station in told] == [1]
+
+
+@pytest.mark.parametrize("stations", [{1, 2}, {1, 2, 3, 254}, set(range(1, 11))])
+def test_plcs_that_answer_alike_are_several_all_the_same(stations: set[int]) -> None:
+    told: list[int] = []
+    result = scan(
+        Adjustable(Line(stations)),
+        [Setting(FACON, FACTORY)],
+        range(1, 11),
+        timeout_s=0.1,
+        on_found=lambda found: told.append(found.station),
+    )
+    found = [station.station for station in result.found]
+    assert sorted(found) == sorted(told) == sorted(stations)
+    assert not any(station.any_number for station in result.found)
+
+
+def test_one_that_does_not_answer_alike_is_another() -> None:
+    line = Line(set(range(1, 255)))
+    line.forge = lambda station, data: frame("400000054", station) if station == 254 else data
+    assert len(look(line).found) == 10 + 4  # those that were asked besides
+
+
+# --- what comes late, what a port does not take, how long it may last -----------------------------------
+
+
+@pytest.mark.parametrize("stations", [(1,), (1, 2, 3), (3, 2, 1)])
+def test_a_late_answer_is_told_with_its_time(stations: tuple[int, ...]) -> None:
+    (found,) = look(Line({1}, after_s=0.25), stations=stations).found
+    assert (found.station, found.late) == (1, True)
+    assert found.latency_s == pytest.approx(0.25)
+
+
+class Picky(Adjustable):
+    """An adapter that has not every speed."""
+
+    def set_line(self, line: LineSettings) -> None:
+        if line.baud > 115200:
+            raise LineError(f"{self.name}: does not take {line}")
+        super().set_line(line)
+
+
+def test_a_speed_that_the_port_does_not_take_is_left_out_and_told() -> None:
+    line = Line({1}, baud=9600)
+    settings = [Setting(FACON, LineSettings(baud)) for baud in (921600, 9600, 614400)]
+    result = scan(Picky(line), settings, [1, 2], timeout_s=0.1)
+    assert [found.station for found in result.found] == [1]
+    assert [setting.line.baud for setting in result.refused] == [921600, 614400]
+    assert [setting.line.baud for setting in result.tried] == [9600]
+
+
+def test_a_port_that_takes_nothing_is_an_error() -> None:
+    settings = [Setting(FACON, LineSettings(baud)) for baud in (921600, 614400, 307200, 230400, 153600)]
+    with pytest.raises(LineError, match="does not take"):
+        scan(Picky(Line({1})), settings, [1], timeout_s=0.1)
+
+
+def test_it_ends_when_its_time_is_over() -> None:
+    settings = [Setting(FACON, LineSettings(baud)) for baud in BAUDS]
+    transport = Adjustable(Line(set()))
+    result = scan(transport, settings, range(1, 255), timeout_s=0.5, longest_s=10.0)
+    assert result.out_of_time
+    assert 10.0 <= result.duration_s < 13.0
+    assert result.probes <= 20
+
+
+def test_the_speeds_are_those_that_fatek_has() -> None:
+    assert sorted(BAUDS) == [
+        *(4800, 7200, 9600, 14400, 19200, 28800, 38400, 57600, 76800, 115200),
+        *(153600, 230400, 307200, 614400, 921600),
+    ]
