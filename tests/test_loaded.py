@@ -121,6 +121,7 @@ FRAME = {
     "fatektool.cli",
     "fatektool.cli.app",
     "fatektool.cli.output",
+    "fatektool.cli.streams",
 }
 
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import contextlib
 import errno
-import io
 import os
 import signal
 import sys
@@ -17,6 +16,7 @@ from typing import TYPE_CHECKING, NoReturn, TextIO
 import click
 
 from fatektool.cli.output import print_json, tell
+from fatektool.cli.streams import mend_streams, reader_is_gone
 from fatektool.errors import DataError, FatektoolError, FileWarning, UsageError
 
 if TYPE_CHECKING:
@@ -24,19 +24,22 @@ if TYPE_CHECKING:
     from types import FrameType
 
 INTERRUPTED = 130
+CUT_SHORT = 141
+"""As a shell tells of a program that wrote to a closed pipe."""
+
 _OUTPUT_LOST = {errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EFBIG, errno.EBADF}
 
 
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
     """Run the command line and end the process with its exit code."""
     words = list(sys.argv[1:] if arguments is None else arguments)
-    _mend_streams()
+    mend_streams()
     code = run(words)
     try:
         sys.stdout.flush()
     except OSError:
         _drop_output()
-    sys.exit(code)
+    sys.exit(CUT_SHORT if not code and reader_is_gone() else code)
 
 
 def run(words: list[str]) -> int:
@@ -75,9 +78,9 @@ def _run(words: list[str]) -> int:  # noqa: PLR0911  # a way out a class of erro
         if sys.stderr.isatty():
             tell("")  # the terminal shows ^C, and no new line
         return failed(Interrupted("interrupted"), as_json=as_json)
-    except BrokenPipeError:  # whoever read our output has seen enough
+    except BrokenPipeError:  # a pipe of somebody else's
         _drop_output()
-        return UsageError.exit_code
+        return CUT_SHORT
     except Exception as error:  # the last door: no traceback for the user
         if isinstance(error, OSError) and error.errno in _OUTPUT_LOST and error.filename is None:
             _drop_output()
@@ -144,19 +147,6 @@ def _output_lost(error: OSError) -> FatektoolError:
         f"standard output cannot be written: {error.strerror}",
         hint="make room or name another place, and run it again",
     )
-
-
-def _mend_streams() -> None:
-    """Stand in for standard streams that are closed; let no character be one that cannot be printed."""
-    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
-        if getattr(sys, name) is None:
-            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: PTH123, SIM115  # stays open
-    out = sys.stdout
-    if isinstance(out, io.TextIOWrapper):
-        raw: object = out.buffer
-        if isinstance(raw, io.FileIO):  # PYTHONUNBUFFERED: half a write would pass for a whole one
-            sys.stdout = out = io.TextIOWrapper(io.BufferedWriter(raw), out.encoding)
-        out.reconfigure(errors="backslashreplace")
 
 
 def _drop_output() -> None:

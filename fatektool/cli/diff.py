@@ -53,9 +53,9 @@ def show_difference(
         **program_differences(found),
     }
     code = ", same code" if found.same_code else ""
-    voice.show(document, program_lines(found, f"same: {len(found.a.pages)} pages{code}", a_name, b_name))
     if report is not None and found.b is not None:
         from fatektool.report.program import diff_report
 
         write_report(report, diff_report(document, found.a, found.b, time=utc()))
+    voice.show(document, program_lines(found, f"same: {len(found.a.pages)} pages{code}", a_name, b_name))
     return 0 if found.same else 1

@@ -91,11 +91,11 @@ def listing_command(
         warn_of_image(found.program, voice)
     warn_of_unknown(found, voice)
     document = listing_document(found, networks, texts)
-    voice.show(document, listing_lines(networks, in_lines, words=words))
     if report is not None:
         from fatektool.report.listing import listing_report
 
         write_report(report, listing_report(document, time=utc()))
+    voice.show(document, listing_lines(networks, in_lines, words=words))
 
 
 def _chosen(networks: Sequence[Network], ranges: Sequence[NetworkRange]) -> list[Network]:

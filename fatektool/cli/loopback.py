@@ -115,11 +115,11 @@ def loopback_command(
         document = loopback_document(plc, result, findings)
     if result.lost is not None:
         voice.warn(f"the line was lost: {result.lost}")
-    voice.show(document, lines(document))
     if report is not None:
         from fatektool.report.loopback import loopback_report
 
         write_report(report, loopback_report(document))
+    voice.show(document, lines(document))
     if result.ended == "interrupted":
         return INTERRUPTED
     return 1 if result.faults else 0

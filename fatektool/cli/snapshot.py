@@ -152,12 +152,12 @@ def take_command(
     if append is not None:
         wait_s = max(60.0, connection.lock_wait_s)
         append_line(append, as_ndjson(snapshot), kept, wait_s=wait_s, waiting=voice.say)
+    if report is not None:
+        write_snapshot_report(report, snapshot, append or folder)
     if voice.json:
         click.echo(as_json(snapshot), nl=False)
     elif to_stdout:
         click.echo(text, nl=False)
-    if report is not None:
-        write_snapshot_report(report, snapshot, append or folder)
     warn_of(snapshot.errors, voice, snapshot.not_asked)
     return PlcError.exit_code if snapshot.errors else 0
 

@@ -39,9 +39,9 @@ def verify_command(connection: Connection, voice: Voice, *, file: Path, report: 
     same = f"same: the PLC's program is the one in {file}, {count} pages"
     if found.pages.b_has_more:
         voice.warn(f"the PLC has more than the {count} pages of {file}: page {count} and on are not compared")
-    voice.show(document, program_lines(found, same, "file", "PLC"))
     if report is not None:
         from fatektool.report.program import verify_report
 
         write_report(report, verify_report(document, found.a))
+    voice.show(document, program_lines(found, same, "file", "PLC"))
     return 0 if found.same else 1

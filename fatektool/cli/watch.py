@@ -17,6 +17,7 @@ from fatektool.cli.output import tell
 from fatektool.cli.read import SELECTION, shown
 from fatektool.cli.report import report_option, watch_report
 from fatektool.cli.snapshot import selected
+from fatektool.cli.streams import reader_is_gone
 from fatektool.errors import FatektoolError, LineError, PlcError, TransportClosed
 from fatektool.jobs.snapshot import Snapshot, take_snapshot
 from fatektool.jobs.times import utc
@@ -100,6 +101,8 @@ def _lines(rounds: Iterator[Snapshot]) -> Snapshot | None:
     for snapshot in rounds:
         click.echo(json.dumps(_document(snapshot), allow_nan=False))
         sys.stdout.flush()
+        if reader_is_gone():
+            break
     return snapshot
 
 

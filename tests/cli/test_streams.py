@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import resource
 import subprocess
 import sys
@@ -49,7 +50,7 @@ def test_a_reader_that_is_gone(words: str, unbuffered: str) -> None:
         env=environment(PYTHONUNBUFFERED=unbuffered),
     )
     os.close(writer)
-    assert (done.returncode, done.stderr) == (2, b"")
+    assert (done.returncode, done.stderr) == (141, b"")
 
 
 @pytest.mark.parametrize("unbuffered", ["", "1"])
@@ -65,8 +66,94 @@ def test_a_reader_that_has_seen_enough(
         assert command.stdout.read(10) == '{\n "schema'
         command.stdout.close()
         assert command.stderr.read() == ""
-    assert command.returncode == 2
+    assert command.returncode == 141
     assert press.program == OLD
+
+
+@pytest.mark.parametrize("as_json", [[], ["--json"]], ids=["words", "json"])
+@pytest.mark.parametrize(
+    ("words", "code"),
+    [
+        ("diff old.json new.json", 1),
+        ("diff old.json old.json", 141),
+        ("verify new.json -p sim:plc.state", 1),
+        ("snapshot R0-R999 -p sim:", 141),
+        ("snapshot R0-R999 R9000 -p sim:", 4),
+        ("loopback --count 5 -p sim:", 141),
+        ("watch R0 --count 3 --interval 0 -p sim:", 141),
+        ("watch R0 R9000 --interval 0 -p sim:", 4),
+    ],
+)
+def test_a_report_whose_command_nobody_reads(press: Press, words: str, code: int, as_json: list[str]) -> None:
+    """What goes into files is whole, and the exit code is the job's; 141 where that would be 0."""
+    assert press.new.exists()
+    reader, writer = os.pipe()
+    os.close(reader)
+    done = subprocess.run(
+        [*COMMAND, *words.split(), "--report", "d.html", *as_json],
+        stdout=writer,
+        stderr=subprocess.PIPE,
+        check=False,
+        env=environment(),
+    )
+    os.close(writer)
+    assert done.returncode == code, done
+    assert Path("d.html").read_text(encoding="utf-8").rstrip().endswith("</html>")
+
+
+def test_a_restore_whose_words_nobody_reads(press: Press) -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    command = [*COMMAND, "restore", str(press.new), "-p", press.target, "--yes"]
+    done = subprocess.run(command, stdout=writer, stderr=subprocess.PIPE, check=False, env=environment())
+    os.close(writer)
+    assert done.returncode == 141
+    assert press.program == load_backup(press.new).program
+
+
+SPEC = """
+[[item]]
+element = "R0"
+name = "Öltemperatur €"
+unit = "°C"
+"""
+LOCALES = [
+    {"PYTHONIOENCODING": "cp1252"},
+    {"PYTHONIOENCODING": "ascii:strict"},
+    {"PYTHONIOENCODING": "utf-16"},
+    {"PYTHONIOENCODING": "", "LC_ALL": "C", "PYTHONCOERCECLOCALE": "0", "PYTHONUTF8": "0"},
+]
+
+
+@pytest.mark.parametrize("locale", LOCALES, ids=lambda locale: "-".join(locale.values()))
+@pytest.mark.parametrize("form", ["csv", "influx", "prometheus", "ndjson", "json"])
+def test_data_are_utf_8_whatever_the_locale_says(place: Path, form: str, locale: dict[str, str]) -> None:
+    """On standard output the same bytes as in a file."""
+    (place / "a.toml").write_text(SPEC, encoding="utf-8")
+    words = ["snapshot", "--spec", "a.toml", "-p", "sim:", "--format", form]
+    env = environment(**locale)
+    printed = subprocess.run([*COMMAND, *words], capture_output=True, check=False, env=env)
+    assert (printed.returncode, printed.stderr) == (0, b"")
+    subprocess.run([*COMMAND, *words, "-o", "x"], check=True, env=env)
+
+    def timeless(data: bytes) -> str:
+        return re.sub(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ|\d{10}\d*|0\.\d+", "TIME", data.decode("utf-8"))
+
+    assert timeless(printed.stdout) == timeless((place / "x").read_bytes())
+    if form in {"csv", "influx", "prometheus"}:
+        assert "Öl" in printed.stdout.decode("utf-8")
+
+
+@pytest.mark.parametrize("locale", LOCALES, ids=lambda locale: "-".join(locale.values()))
+def test_words_bend_and_never_break(place: Path, locale: dict[str, str]) -> None:
+    """On a terminal, and on stderr, what the encoding lacks is shown as a code."""
+    (place / "Ω.json").write_text("{}", encoding="utf-8")
+    done = subprocess.run(
+        [*COMMAND, "inspect", "Ω.json"], capture_output=True, check=False, env=environment(**locale)
+    )
+    assert done.returncode == 5
+    assert b"Traceback" not in done.stderr
+    assert b"fault of fatektool" not in done.stderr.replace(b"\0", b"")
 
 
 FULL = "> /dev/full"
