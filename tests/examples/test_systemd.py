@@ -59,6 +59,30 @@ def test_by_systemd(gateway: Gateway, blocks: Blocks) -> None:
     assert "Result=exit-code\nExecMainStatus=1" in ended.out
 
 
+LOCKS = """
+systemctl start fatektool-snapshot.service
+ls /run/lock/fatektool-*.lock > /out/in-run
+rm /run/lock/fatektool-*.lock
+chmod 0755 /run/lock
+systemctl start fatektool-snapshot.service
+ls /tmp/fatektool-*.lock > /out/in-tmp
+sudo -u fatektool fatektool status -p /dev/ttyUSB0 -q > /dev/null
+ls /tmp/fatektool-*.lock > /out/of-a-user
+"""
+
+
+def test_a_unit_locks_where_others_do(gateway: Gateway, blocks: Blocks) -> None:
+    """Also where ``/run/lock`` is root's alone, as on Arch."""
+    ended = gateway.run(
+        NODE_EXPORTER, blocks.user_by_systemd, blocks.inventory, gateway.inventory(), blocks.systemd, LOCKS
+    )
+    assert ended.code == 0, ended
+    kept = {name: (ended.left / name).read_text().split() for name in ("in-run", "in-tmp", "of-a-user")}
+    assert any("ttyUSB0" in path for path in kept["in-run"]), kept
+    assert kept["in-tmp"] == kept["of-a-user"]
+    assert any("ttyUSB0" in path for path in kept["in-tmp"]), kept
+
+
 def test_where_there_is_no_node_exporter(gateway: Gateway, blocks: Blocks) -> None:
     """Nothing of it is needed to set up; the service then says which folder it has not."""
     ended = gateway.run(blocks.user_by_systemd, "test ! -e /var/lib/prometheus", blocks.inventory)
