@@ -123,11 +123,11 @@ def _samples(
     told: list[tuple[str, Told]], former: dict[tuple[str, str], float], now: float
 ) -> Iterator[Sample]:
     for job, each in told:
-        of_plc, of_job = {"plc": each.name}, {"plc": each.name, "job": job}
-        place = of_plc | {"target": each.target, "station": each.station}
+        of_job = {"plc": each.name, "job": job}
+        place = of_job | {"target": each.target, "station": each.station}
         yield sample("fatek_plc_info", 1, place)
         if each.up is not None:
-            yield sample("fatek_up", each.up, of_plc)
+            yield sample("fatek_up", each.up, of_job)
         yield sample("fatek_exit_code", each.exit_code, of_job)
         yield sample("fatek_last_run_timestamp_seconds", int(now), of_job)
         yield sample("fatek_duration_seconds", round(each.duration_s, 3), of_job)
@@ -144,7 +144,7 @@ def _samples(
                 "watchdog_timeout",
                 "emergency_stop",
             ):
-                yield sample(f"fatek_{flag}", getattr(done.flags, flag), of_plc)
+                yield sample(f"fatek_{flag}", getattr(done.flags, flag), of_job)
     for (name, job), when in sorted(former.items()):
         yield sample("fatek_last_success_timestamp_seconds", when, {"plc": name, "job": job})
 

@@ -19,7 +19,7 @@ from fatektool.errors import PlcError, UsageError
 from fatektool.jobs.selection import parse_items
 from fatektool.jobs.snapshot import load_snapshot, take_all, take_snapshot
 from fatektool.jobs.snapshot_compare import Change, compare_snapshots
-from fatektool.jobs.snapshot_formats import FORMATS, SUFFIXES, as_json, as_ndjson
+from fatektool.jobs.snapshot_formats import FORMATS, SUFFIXES, as_json, as_ndjson, as_prometheus
 from fatektool.jobs.snapshot_spec import MAX_SPEC, Spec, items_of, parse_spec
 from fatektool.jobs.snapshot_store import Keep, append_line, encoded, require_lines, save_dated
 from fatektool.program.files import read_bounded, require_folder, require_place, write_whole
@@ -144,7 +144,10 @@ def take_command(
     _require_places(output, folder, append, kept)
     with connection.open(voice, needs=(Command.DETAILED_STATUS,) if whole else ()) as plc:
         snapshot = take_all(plc) if whole else take_snapshot(plc, items)
-    text = FORMATS[form](snapshot)
+    if form == "prometheus":
+        text = as_prometheus(snapshot, _name(output, folder, spec))
+    else:
+        text = FORMATS[form](snapshot)
     if folder is not None:
         voice.detail(f"saved {save_dated(snapshot, text, folder, suffix=SUFFIXES[form], keep=kept)}")
     elif output is not None:
@@ -160,6 +163,15 @@ def take_command(
         click.echo(text, nl=False)
     warn_of(snapshot.errors, voice, snapshot.not_asked)
     return PlcError.exit_code if snapshot.errors else 0
+
+
+def _name(output: str | None, folder: Path | None, spec: Path | None) -> str:
+    """What tells a snapshot's figures from another's of the same PLC: the file, or the specification."""
+    if folder is not None:
+        return folder.name
+    if output is not None:
+        return Path(output).stem
+    return "" if spec is None else spec.stem
 
 
 def _form(form: str | None, voice: Voice, output: str | None, append: Path | None, *, to_stdout: bool) -> str:

@@ -1,4 +1,8 @@
-r"""What many PLCs are like, as a file for the textfile collector of Prometheus's node exporter.
+r"""Figures of PLCs as files for the textfile collector of Prometheus's node exporter.
+
+The collector reads all files of a folder as one: a series that stands in two of them makes it refuse both,
+and a metric has one help text in all. So each series bears the job that wrote it, and a snapshot's the name
+of its file or specification. Which of two jobs knows better shows in ``fatek_last_run_timestamp_seconds``.
 
 The collector refuses time stamps on samples, so ages are told by time stamps of success as values: the age is
 ``time() - fatek_last_success_timestamp_seconds``. Those of the former file are carried over, as a run that
@@ -30,9 +34,12 @@ METRICS: Final = {
     "fatek_ladder_checksum_error": "1 if the PLC's program has a wrong checksum.",
     "fatek_watchdog_timeout": "1 if the PLC's watchdog timed out.",
     "fatek_emergency_stop": "1 if the PLC's emergency stop is active.",
+    "fatek_snapshot_timestamp_seconds": "When the values were read.",
+    "fatek_value": "Value of an element.",
 }
 """Each metric, a gauge, with its help, in the file's order."""
 
+_PLAIN_BELOW: Final = 10**15
 _SUCCESS: Final = "fatek_last_success_timestamp_seconds"
 _SAMPLE: Final = re.compile(_SUCCESS + r'\{job="([^"\\]*)",plc="((?:[^"\\]|\\.)*)"\} ([0-9.e+]+)', re.ASCII)
 _ESCAPES: Final = {"\\": "\\\\", '"': '\\"', "\n": "\\n"}
@@ -74,7 +81,7 @@ def _lines(metric: str, samples: list[Sample]) -> Iterator[str]:
     yield f"# TYPE {metric} gauge"
     for each in samples:
         labels = ",".join(f'{name}="{_escaped(text)}"' for name, text in each.labels)
-        yield f"{metric}{{{labels}}} {each.value:.15g}"
+        yield f"{metric}{{{labels}}} {_number(each.value)}"
 
 
 def successes(text: str) -> dict[tuple[str, str], float]:
@@ -86,6 +93,11 @@ def successes(text: str) -> dict[tuple[str, str], float]:
             plc = re.sub(r"\\.", lambda escape: _UNESCAPES.get(escape[0], escape[0]), match[2])
             found[plc, match[1]] = float(match[3])
     return found
+
+
+def _number(value: float) -> str:
+    """As short as it can be without being another one."""
+    return str(int(value)) if value == int(value) and abs(value) < _PLAIN_BELOW else repr(value)
 
 
 def _escaped(text: str) -> str:

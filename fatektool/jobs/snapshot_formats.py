@@ -71,30 +71,30 @@ def as_influx(snapshot: Snapshot) -> str:
     return "".join(lines)
 
 
-def as_prometheus(snapshot: Snapshot) -> str:
-    """Prometheus exposition format: ``fatek_value`` with labels; samples carry no time."""
-    where = f'target="{_label(snapshot.target)}",station="{snapshot.station}"'
-    lines = []
+def as_prometheus(snapshot: Snapshot, name: str = "") -> str:
+    """Prometheus exposition format: ``fatek_value`` with labels; samples carry no time.
+
+    Args:
+        snapshot: the values.
+        name: tells this snapshot from others of the same PLC; empty for the only one.
+    """
+    from fatektool.jobs.prometheus import exposition, sample
+
+    where: dict[str, object] = {"target": snapshot.target, "station": snapshot.station}
+    if name:
+        where["snapshot"] = name
+    samples = [sample("fatek_snapshot_timestamp_seconds", _seconds(snapshot), where)]
     if snapshot.running is not None:
-        lines += [
-            *_gauge("running", "1 in RUN, 0 in STOP."),
-            f"fatek_running{{{where}}} {int(snapshot.running)}\n",
-        ]
-    lines += [
-        *_gauge("snapshot_timestamp_seconds", "When the values were read."),
-        f"fatek_snapshot_timestamp_seconds{{{where}}} {_seconds(snapshot)}\n",
-        *_gauge("value", "Value of an element."),
-    ]
+        samples.append(sample("fatek_running", snapshot.running, where))
     for key, value in snapshot.values.items():
         if value is None or isinstance(value, str):
             continue
         part = snapshot.elements[key]
-        unit = f',unit="{_label(part["unit"])}"' if "unit" in part else ""
-        number = int(value) if isinstance(value, bool) else value
-        lines.append(
-            f'fatek_value{{{where},key="{_label(key)}",element="{part["element"]}"{unit}}} {number!r}\n'
+        labels = where | {"key": key, "element": part["element"]}
+        samples.append(
+            sample("fatek_value", value, labels | ({"unit": part["unit"]} if "unit" in part else {}))
         )
-    return "".join(lines)
+    return exposition(samples)
 
 
 FORMATS: Final[dict[str, Callable[[Snapshot], str]]] = {
@@ -105,10 +105,6 @@ FORMATS: Final[dict[str, Callable[[Snapshot], str]]] = {
     "prometheus": as_prometheus,
 }
 SUFFIXES: Final = {"json": "json", "ndjson": "ndjson", "csv": "csv", "influx": "influx", "prometheus": "prom"}
-
-
-def _gauge(name: str, text: str) -> list[str]:
-    return [f"# HELP fatek_{name} {text}\n", f"# TYPE fatek_{name} gauge\n"]
 
 
 def _seconds(snapshot: Snapshot) -> int:
@@ -139,7 +135,3 @@ def _influx_field(value: Value) -> str:
         quoted = value.replace("\\", "\\\\").replace('"', '\\"')
         return f'text="{quoted}"'
     return f"value={int(value) if isinstance(value, bool) else value!r}"
-
-
-def _label(text: str) -> str:
-    return text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")

@@ -74,11 +74,11 @@ def test_the_file(cli: Cli, plant: Hall) -> None:
     began = int(time.time())
     assert cli("fleet", "status", "--prometheus", "x.prom").code == 0
     found = samples(Path("x.prom").read_text())
-    assert found[f'fatek_plc_info{{plc="pump",station="2",target="{plant.targets[1]}"}}'] == "1"
-    assert found['fatek_up{plc="press"}'] == "1"
-    assert found['fatek_running{plc="press"}'] == "1"
-    assert found['fatek_battery_low{plc="press"}'] == "0"
-    assert found['fatek_battery_low{plc="pump"}'] == "1"
+    assert found[f'fatek_plc_info{{job="status",plc="pump",station="2",target="{plant.targets[1]}"}}'] == "1"
+    assert found['fatek_up{job="status",plc="press"}'] == "1"
+    assert found['fatek_running{job="status",plc="press"}'] == "1"
+    assert found['fatek_battery_low{job="status",plc="press"}'] == "0"
+    assert found['fatek_battery_low{job="status",plc="pump"}'] == "1"
     assert found['fatek_exit_code{job="status",plc="press"}'] == "0"
     stamp = int(found['fatek_last_success_timestamp_seconds{job="status",plc="press"}'])
     assert began <= stamp <= time.time()
@@ -99,7 +99,7 @@ def test_a_run_that_fails_keeps_the_time_of_the_last_success(cli: Cli, plant: Ha
     assert int(found[success.format("oven")]) > 1000
     assert success.format("gone") not in found  # not in the inventory any more
     assert found['fatek_exit_code{job="backup",plc="press"}'] == "4"
-    assert found['fatek_up{plc="press"}'] == "1"  # it answered: it refused
+    assert found['fatek_up{job="backup",plc="press"}'] == "1"  # it answered: it refused
     assert found['fatek_program_changed{job="backup",plc="oven"}'] == "0"
 
 
@@ -117,9 +117,9 @@ def test_a_plc_that_is_not_there(cli: Cli, plant: Hall) -> None:
     Path("odd.state").write_text("{}")
     cli("fleet", "status", "--prometheus", "x.prom")
     found = samples(Path("x.prom").read_text())
-    assert found['fatek_up{plc="nobody"}'] == "0"
+    assert found['fatek_up{job="status",plc="nobody"}'] == "0"
     assert found['fatek_exit_code{job="status",plc="nobody"}'] == "3"
-    assert 'fatek_up{plc="odd"}' not in found  # nobody was asked
+    assert 'fatek_up{job="status",plc="odd"}' not in found  # nobody was asked
 
 
 def test_a_single_check(cli: Cli, plant: Hall) -> None:
@@ -127,7 +127,7 @@ def test_a_single_check(cli: Cli, plant: Hall) -> None:
     assert cli("check", "-p", "press", "--prometheus", "x.prom").code == 1
     found = samples(Path("x.prom").read_text())
     assert found['fatek_exit_code{job="check",plc="press"}'] == "1"
-    assert found['fatek_battery_low{plc="press"}'] == "1"
+    assert found['fatek_battery_low{job="check",plc="press"}'] == "1"
 
 
 @pytest.mark.parametrize("name", ["x.txt", "no/x.prom", "."])
