@@ -194,14 +194,14 @@ def test_a_call_without_an_outcome_is_given_up_after_its_time() -> None:
     with transport, pytest.raises(LineError, match="nothing for 60 s, nothing for 60 s, nothing for 60 s"):
         transport.connect()
     assert (len(dialled(modem)), modem.aborted) == (3, 3)
-    assert transport.clock() == pytest.approx(3 * 60 + 2 * 10, abs=0.1)
+    assert transport.clock() == pytest.approx(3 * 60 + 2 * 11, abs=0.1)
 
 
 def test_the_third_try_may_find_a_connection() -> None:
     modem = ScriptedModem(["BUSY", SILENCE, "CONNECT 2400"])
     transport = called(modem)
     assert modem.online
-    assert transport.clock() == pytest.approx(60 + 2 * 10 + 0.2, abs=0.1)
+    assert transport.clock() == pytest.approx(60 + 2 * 11 + 0.2, abs=0.1)
     transport.close()
     assert not modem.online
 
