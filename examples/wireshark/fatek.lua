@@ -30,6 +30,12 @@ local ERRORS = {
   [0x7] = "cannot run, syntax error in the program", [0x9] = "cannot run, instruction not supported",
   [0xA] = "illegal address",
 }
+local MSERIES_ERRORS = { -- that paper's own: no 3, and another 9
+  [0x0] = "none", [0x2] = "illegal value", [0x4] = "illegal format, or a command that cannot be executed",
+  [0x5] = "cannot run, ladder checksum error", [0x6] = "cannot run, PLC ID differs from ladder ID",
+  [0x7] = "cannot run, syntax error in the program", [0x9] = "cannot run, function not supported",
+  [0xA] = "illegal address",
+}
 local CONTROLS = { [1] = "disable", [2] = "enable", [3] = "set", [4] = "reset" }
 local MODELS = {
   [0xFF] = "FB, 8K steps", [0x53] = "FBE, 8K steps", [0x54] = "FBE, 13K steps",
@@ -65,7 +71,7 @@ local F = {
   role = ProtoField.string("fatek.role", "Role"),
   station = ProtoField.uint8("fatek.station", "Station"),
   command = ProtoField.uint8("fatek.command", "Command", base.HEX, COMMANDS),
-  error = ProtoField.uint8("fatek.error", "Error", base.HEX, ERRORS),
+  error = ProtoField.uint8("fatek.error", "Error", base.HEX),
   length = ProtoField.uint16("fatek.length", "Payload length"),
   run = ProtoField.uint8("fatek.run", "Run", base.DEC, { [0] = "STOP", [1] = "RUN" }),
   control = ProtoField.uint8("fatek.control", "Control", base.DEC, CONTROLS),
@@ -111,7 +117,7 @@ local E = {
 fatek.fields, fatek.experts = F, E
 
 -- A reader takes the data field of a frame apart, from the left -------------------------------------------
--- What the two protocols write differently is in `code`, `short`, `widths`, `number` and `element`.
+-- What the two protocols write differently is in `errors`, `code`, `short`, `widths`, `number` and `element`.
 
 local Reader = {}
 Reader.__index = Reader
@@ -137,7 +143,7 @@ function Reader:value(element, states) -- states: how a discrete's 0 and 1 are s
 end
 
 -- FACON: hex digits, and decimal addresses
-local Text = setmetatable({ code = 1, short = 2, page = 4, widths = { [1] = 1, [16] = 4, [32] = 8 } }, Reader)
+local Text = setmetatable({ errors = ERRORS, code = 1, short = 2, page = 4, widths = { [1] = 1, [16] = 4, [32] = 8 } }, Reader)
 Text.__index = Text
 
 function Text:number(digits)
@@ -165,7 +171,7 @@ function Text:binary(size) -- hex digits as the bytes that they stand for, in a 
 end
 
 -- M-series: numbers and addresses as bytes
-local Binary = setmetatable({ code = 1, short = 1, page = 2, widths = { [1] = 1, [16] = 2, [32] = 4 } }, Reader)
+local Binary = setmetatable({ errors = MSERIES_ERRORS, code = 1, short = 1, page = 2, widths = { [1] = 1, [16] = 2, [32] = 4 } }, Reader)
 Binary.__index = Binary
 
 function Binary:number(size)
@@ -349,8 +355,9 @@ local function add_answer(reader, tree, command, request)
   if reader.short == 1 or reader:left() ~= WHOLE[command] then
     local code, range = reader:number(reader.code)
     local item = tree:add(F.error, range, code)
+    local meaning = reader.errors[code] or "a code that no paper lists"
+    item:append_text(" (" .. meaning .. ")")
     if code ~= 0 then
-      local meaning = ERRORS[code] or "a code that no paper lists"
       item:add_proto_expert_info(E.refused, "Refused: " .. meaning)
       return words .. " REFUSED: " .. meaning
     end

@@ -11,8 +11,11 @@ answer is the value it carries; a command that only acknowledges answers ``None`
     48 ReadMixed         49 WriteMixed        4E Loopback          4F ReadPage
     50 WritePage         53 ReadDetailedStatus
 
-Limits: FACON paper, section 4.2; the M-series paper has the same. How long a run may be differs from protocol
-to protocol: the codec checks it, these two by ``require_run_limit``.
+Limits: FACON paper, section 4.2. The M-series paper, section 2.5, has the same numbers of elements: 256
+discretes, 64 registers, 64 and 32 of mixed ones. That a 32-bit element counts as two words, in a run and in a
+mixed request, is FACON's rule; the M-series paper only says "1 to 64 words" in its list of commands. It is
+kept for both. How long a run may be differs from protocol to protocol: the codec checks it, these two by
+``require_run_limit``.
 """
 
 from __future__ import annotations
@@ -273,7 +276,7 @@ def _discrete(element: Element, command: Command) -> None:
 
 
 def run_limit(kind: Kind) -> int:
-    """How many elements of a kind a run (43 to 47) of FACON and M-series holds."""
+    """How many elements a run (43 to 47) of FACON and M-series holds: 32 of 32 bits, by FACON's rule."""
     return MAX_DISCRETES if kind.bits == 1 else MAX_READ_WORDS // kind.words
 
 

@@ -186,6 +186,10 @@ def error_text(code: int, protocol: str = "facon") -> str:
         if code in modbus_data.GATEWAY:
             return f"the gateway says: {modbus_data.GATEWAY[code]}"
         return modbus_data.MEANINGS.get(code, "a code that Modbus does not list")
+    if protocol == "mseries":
+        from fatektool.protocol import mseries_errors
+
+        return mseries_errors.MEANINGS.get(code, mseries_errors.UNKNOWN)
     from fatektool.protocol.plc_errors import MEANINGS
 
     return MEANINGS.get(code, "a code that no paper lists")

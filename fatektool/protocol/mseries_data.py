@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar, cast
 
-from fatektool.errors import FrameError, UsageError
+from fatektool.errors import FrameError, PlcRefused, UsageError
 from fatektool.protocol.commands import (
     BRIEF_BYTES,
     DETAILED_BYTES,
@@ -47,7 +47,8 @@ from fatektool.protocol.mseries_bytes import (
     value_bytes,
     words_bytes,
 )
-from fatektool.protocol.plc_errors import asked, refusal
+from fatektool.protocol.mseries_errors import MEANINGS, NEXT, UNKNOWN
+from fatektool.protocol.plc_errors import asked
 from fatektool.protocol.status import BriefStatus, DetailedStatus, RawStatus
 
 if TYPE_CHECKING:
@@ -278,7 +279,14 @@ def parse_answer(request: Request[A], data: bytes) -> A:
     size = 1 + fields.size(request)
     one_byte_loopback = command == Command.LOOPBACK and size == 1
     if len(data) == 1 and data != _NO_ERROR and not one_byte_loopback:
-        raise refusal(data[0], command, asked(request))
+        code = data[0]
+        raise PlcRefused(
+            f"the PLC refused to {asked(request)} ({command:02X}): error {code:X}, "
+            f"{MEANINGS.get(code, UNKNOWN)}",
+            code=code,
+            command=command,
+            hint=NEXT.get(code),
+        )
     if command == Command.LOOPBACK:
         return cast("A", data)
     if len(data) != size and (command != Command.DETAILED_STATUS or not data):

@@ -1,6 +1,6 @@
 """The error codes of a PLC's answer, in words, with what to do next.
 
-FACON paper, section 3; the M-series paper has the same codes but 3.
+FACON paper, section 3. The M-series paper has words of its own: ``mseries_errors``.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def refusal(code: int, command: int, asked: str) -> PlcRefused:
     """The exception for an error code.
 
     Args:
-        code: 1 to 15 in FACON, 1 to 255 in M-series.
+        code: 1 to 15.
         command: the command's code.
         asked: what was asked, in words: ``read program page 5``.
     """

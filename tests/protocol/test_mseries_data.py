@@ -25,7 +25,8 @@ from fatektool.protocol.elements import KINDS, Element
 from fatektool.protocol.mseries import MSERIES
 from fatektool.protocol.mseries_bytes import element_bytes, element_size, take_element
 from fatektool.protocol.mseries_data import answer_data, parse_answer, parse_request, request_data
-from fatektool.protocol.plc_errors import MEANINGS, asked
+from fatektool.protocol.mseries_errors import MEANINGS
+from fatektool.protocol.plc_errors import asked
 from fatektool.protocol.status import BriefStatus, DetailedStatus, RawStatus, StatusFlags
 
 from .decoding import query, response
@@ -199,7 +200,7 @@ def test_error_codes(request_: Request[Any], code: int) -> None:
     with pytest.raises(PlcRefused) as caught:
         parse_answer(request_, bytes([code]))
     assert (caught.value.code, caught.value.command) == (code, request_.command)
-    meaning = MEANINGS.get(code, "a code that no paper lists")
+    meaning = MEANINGS.get(code, "a code that the M-series paper does not list")
     assert caught.value.message.endswith(f"({request_.command:02X}): error {code:X}, {meaning}")
 
 

@@ -133,7 +133,7 @@ def test_an_echo_is_the_request_again() -> None:
 
 
 @pytest.mark.parametrize(
-    ("code", "meaning"), [(0x0A, "illegal address"), (0x0B, "a code that no paper lists")]
+    ("code", "meaning"), [(0x0A, "illegal address"), (0x0B, "a code that the M-series paper does not list")]
 )
 def test_refusals(code: int, meaning: str) -> None:
     for command in (0x41, 0x46, 0x53, 0x4F):

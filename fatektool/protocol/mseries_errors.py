@@ -1,0 +1,27 @@
+"""The error byte of an M-series answer, in that paper's own words.
+
+M-series paper, section 2.3. It has neither FACON's 3 nor its words for 9.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+UNKNOWN: Final = "a code that the M-series paper does not list"
+MEANINGS: Final = {
+    0x02: "illegal value",
+    0x04: "illegal format, or a command that cannot be executed",
+    0x05: "cannot run, ladder checksum error",
+    0x06: "cannot run, the PLC's ID differs from the ladder's ID",
+    0x07: "cannot run, syntax error in the program",
+    0x09: "cannot run, function not supported",
+    0x0A: "illegal address",
+}
+NEXT: Final = {
+    0x05: "the program in the PLC is damaged: put it in again with the vendor's program",
+    0x06: "the program was locked to a PLC with another ID: load one made for this PLC, or set the ID",
+    0x07: "put in a program that ran on this PLC, with the vendor's program",
+    0x09: "the program wants a function that this PLC does not have: 'fatektool status' shows the model",
+    0x0A: "this PLC has no such element",
+}
+"""This project's advice: [E:error-advice]. There are no program commands, so nothing can be restored."""
