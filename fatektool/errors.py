@@ -40,12 +40,15 @@ class FatektoolError(Exception):
         message: one line: what happened, where, what was expected and got.
         hint: the next step for the person who reads it, as a sentence without its full stop.
         details: values for a script: JSON types only.
+
+    ``lines`` is the same for a person, a fact a line; empty for what fits on one.
     """
 
     exit_code: ClassVar[int] = 70
 
     def __init__(self, message: str, *, hint: str | None = None, **details: Any) -> None:
         super().__init__(message)
+        self.lines: list[str] = []
         self.message = message
         self.hint = hint
         self.details = details

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import os
 import secrets
+from itertools import count
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -19,6 +20,7 @@ from hypothesis import HealthCheck, is_hypothesis_test, settings
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from pathlib import Path
 
 _SEED = "FATEKTOOL_PROPERTY_SEED"
 """Tells the processes of pytest-xdist the seed."""
@@ -66,3 +68,19 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: p
     if _looks_for_new_cases(config) and terminalreporter.stats.get("failed"):
         again = f"-m slow --hypothesis-seed={config.option.hypothesis_seed}"
         terminalreporter.write_line(f"The same cases again: python -m pytest {again} PATH::TEST")
+
+
+_NUMBERS = count()
+
+
+@pytest.fixture(scope="session")
+def states(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("states")
+
+
+@pytest.fixture(autouse=True)
+def state_folder(states: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Where restores that did not complete are kept, for each test: made when it is used."""
+    folder = states / str(next(_NUMBERS))
+    monkeypatch.setenv("FATEKTOOL_STATE_DIR", str(folder))
+    return folder

@@ -17,7 +17,9 @@ from fatektool.cli.app import ENTRIES
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
-_TIME = re.compile(r"\d{8}T\d{6}Z")
+_TIME = re.compile(
+    r"\d{8}T\d{6}Z|\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ|under 1 s|(about )?\d+ (s|min)$", re.MULTILINE
+)
 
 
 def free_port() -> int:

@@ -114,14 +114,14 @@ class Interrupted(FatektoolError):
 
 
 def failed(error: FatektoolError, *, as_json: bool) -> int:
-    """Say what went wrong: one line on stderr, and with ``--json`` a document on stdout."""
+    """Say what went wrong on stderr, on one line but for ``lines``; with ``--json`` in a document too."""
     if as_json:
         from fatektool.cli.documents import error_document
 
         with contextlib.suppress(OSError):
             print_json(error_document(error))
-    line = " ".join(str(error).split())
-    tell(f"fatektool: {line}")
+    for number, line in enumerate(error.lines or [" ".join(str(error).split())]):
+        tell(line if number else f"fatektool: {line}")
     return error.exit_code
 
 

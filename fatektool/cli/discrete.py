@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from fatektool.cli.addressee import look
 from fatektool.cli.broadcast import broadcast_option, means_all, send_to_all
 from fatektool.cli.documents import where
 from fatektool.cli.modbus_map import modbus_map_option
@@ -130,15 +131,17 @@ def _show(
         if control is not None and name not in refused and not _took(state, control)
     }
     unread |= refused
+    here = look(plc) if control is not None else None
     document = {
         "schema": "fatektool.discrete/1",
         **where(plc),
+        **({} if here is None else here.document()),
         "discretes": states,
         "not_taken": not_taken,
         "errors": unread,
         "not_asked": not_asked,
     }
-    voice.show(document, _lines(states))
+    voice.show(document, [*_lines(states), *([] if here is None else [here.line])])
     warn_of({name: f"did not take: {why}" for name, why in not_taken.items()}, voice)
     warn_of(unread, voice, not_asked)
     return PlcError.exit_code if unread or not_taken else 0

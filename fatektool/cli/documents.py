@@ -46,6 +46,8 @@ def error_document(error: FatektoolError) -> dict[str, Any]:
 
 def status_document(report: StatusReport) -> dict[str, Any]:
     """``fatektool.status/1``."""
+    from fatektool.cli.unfinished import unfinished_document  # loaded with the connection, if there is one
+
     return {
         "schema": "fatektool.status/1",
         "time": report.time,
@@ -55,6 +57,7 @@ def status_document(report: StatusReport) -> dict[str, Any]:
         "status": report.flags.document(),
         "system": _system(report),
         "brief": {"status2": report.brief.status2, "model": report.brief.model},
+        "unfinished_restore": unfinished_document(report.target, report.station),
     }
 
 
@@ -171,13 +174,23 @@ def verify_document(
 
 
 def restore_document(
-    plc: Plc, file: Path, result: RestoreResult, *, dry_run: bool, pages_to_write: int, duration_s: float
+    plc: Plc,
+    file: Path,
+    result: RestoreResult,
+    *,
+    dry_run: bool,
+    pages_to_write: int,
+    duration_s: float,
+    model: str | None,
+    source: dict[str, Any],
 ) -> dict[str, Any]:
     """``fatektool.restore/1``."""
     return {
         "schema": "fatektool.restore/1",
         **where(plc),
+        "model": model,
         "file": str(file),
+        "source": source,
         "dry_run": dry_run,
         "pages_to_write": pages_to_write,
         "pages_written": result.pages_written,

@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from fatektool.cli.addressee import Pace, look, time_row
 from fatektool.cli.documents import where
 from fatektool.cli.link_host import host_document
 from fatektool.cli.link_ports import modem_rows
 from fatektool.cli.options import PATH, Connection, connection_options, yes_option
-from fatektool.cli.output import Voice, can_ask, table
+from fatektool.cli.output import Voice, table
 from fatektool.cli.pairs import apart
 from fatektool.cli.read import warn_of
-from fatektool.cli.way_back import same_again, save_safety
-from fatektool.errors import PlcError, RestoreIncomplete, UsageError
+from fatektool.cli.way_back import RegisterWrite, same_again
+from fatektool.errors import PlcError
 from fatektool.jobs.link_host import LinkHost, read_host
 from fatektool.jobs.link_modem import ModemReport, ModemSettings, plan_modem, read_modem, write_modem
 from fatektool.program.files import require_folder
@@ -113,33 +115,32 @@ def set_command(
     safety: str | None = None
     failed: list[NotTaken] = []
     with connection.open(voice, writes=not dry_run) as plc:
+        pace = Pace(plc)
         plan = plan_modem(plc, settings)
         host = read_host(plc)
-        if plan.changes and not (dry_run or yes or can_ask()):
-            raise UsageError(
-                "this needs a confirmation, and there is no terminal to ask on: nothing was written",
-                hint="add --yes",
-            )
+        if plan.changes and not dry_run:
+            voice.require_answer(yes=yes, unchanged="nothing was written")
         for warning in host.warnings():
             voice.warn(warning)
+        here = look(plc)
         if plan.changes and not dry_run:
-            safety = None if folder is None else str(save_safety(plan.present, "modem", folder))
-            for change in plan.changes:
-                voice.say(_change_line(change))
-            voice.say(
-                f"The values before are saved in {safety}" if safety else "The values before are NOT saved."
+            work = RegisterWrite(
+                here,
+                plan.present,
+                "modem",
+                folder,
+                [time_row(plc, plan, pace)],
+                map(_change_line, plan.changes),
+                len(plan.changes),
+                same_again(connection, "set"),
+                "the modem was not set whole",
             )
-            if not voice.confirm(f"Write {len(plan.changes)} values into the PLC?", yes=yes):
-                raise UsageError("not agreed to: nothing was written")
-            try:
-                failed = write_modem(plc, plan, safety)
-            except RestoreIncomplete as error:
-                error.details["command"] = same_again(connection, "set")
-                error.hint = f"{error.hint}; mend the cause, then: {error.details['command']}"
-                raise
+            safety, failed = work.carry_out(voice, partial(write_modem, plc, plan), yes=yes)
         report = read_modem(plc)
         document = _document(plc, report, _set_document(plan, failed, safety=safety, dry_run=dry_run), host)
-    voice.show(document, _set_lines(plan, failed, report, dry_run=dry_run))
+    document |= here.document()
+    shown = [*_set_lines(plan, failed, report, dry_run=dry_run), *([here.line] if plan.changes else [])]
+    voice.show(document, shown)
     warn_of({str(each.element): _did_not(each) for each in failed}, voice)
     return PlcError.exit_code if failed else 0
 

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-import os
 import shlex
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from fatektool.cli.addressee import Pace, look, time_row
 from fatektool.cli.documents import where
 from fatektool.cli.link_host import host_document
 from fatektool.cli.link_table_view import fault_documents, table_lines
 from fatektool.cli.options import PATH, Connection, connection_options, yes_option
-from fatektool.cli.output import Voice, can_ask
 from fatektool.cli.pairs import apart
 from fatektool.cli.read import warn_of
-from fatektool.cli.way_back import same_again, save_safety
-from fatektool.errors import DataError, PlcError, RestoreIncomplete, UsageError
+from fatektool.cli.way_back import RegisterWrite, same_again
+from fatektool.errors import DataError, PlcError
 from fatektool.jobs.link_host import LinkHost, read_host
 from fatektool.jobs.link_table import WritePlan, parse_start, plan_write, write_plan
 from fatektool.jobs.link_toml import MAX_TOML, load_table
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
+    from fatektool.cli.output import Voice
     from fatektool.client import Plc
     from fatektool.jobs.register_writes import NotTaken
     from fatektool.protocol.elements import Element
@@ -77,28 +78,29 @@ def write_command(
     safety: str | None = None
     failed: list[NotTaken] = []
     with connection.open(voice, writes=not dry_run) as plc:
+        pace = Pace(plc)
         plan = plan_write(plc, start, words)
         host = read_host(plc, needs_of_table(table))
-        if plan.changes and not (dry_run or yes or can_ask()):
-            raise UsageError(
-                "this needs a confirmation, and there is no terminal to ask on: nothing was written",
-                hint="add --yes",
-            )
+        if plan.changes and not dry_run:
+            voice.require_answer(yes=yes, unchanged="nothing was written")
         for warning in host.warnings():
             voice.warn(warning)
+        here = look(plc)
         if plan.changes and not dry_run:
-            safety = None if folder is None else str(save_safety(plan.present, _file_stem(file), folder))
-            _tell(plan, table, faults, safety, voice)
-            if not voice.confirm(f"Write {len(plan.changes)} registers of the PLC?", yes=yes):
-                raise UsageError("not agreed to: nothing was written")
-            try:
-                failed = write_plan(plc, plan, safety)
-            except RestoreIncomplete as error:
-                command = same_again(connection, "write")
-                error.details["command"] = command
-                lie = f"the words before lie in {safety}" if safety else "the words before are not saved"
-                error.hint = f"{lie}; mend the cause, then: {command}"
-                raise
+            if plan.present.running:
+                voice.warn("the PLC is in RUN: an instruction may use the table while it is half new")
+            work = RegisterWrite(
+                here,
+                plan.present,
+                file.stem,
+                folder,
+                [("file", file), ("to", f"{start}, {len(words)} registers"), time_row(plc, plan, pace)],
+                table_lines(table, faults),
+                len(plan.changes),
+                same_again(connection, "write"),
+                "the table was not written whole",
+            )
+            safety, failed = work.carry_out(voice, partial(write_plan, plc, plan), yes=yes)
         document = _document(
             plc,
             file,
@@ -111,7 +113,9 @@ def write_command(
             host=host,
             dry_run=dry_run,
         )
-    voice.show(document, _result_lines(plan, failed, dry_run=dry_run))
+    document |= here.document()
+    shown = [*_result_lines(plan, failed, dry_run=dry_run), *([here.line] if plan.changes else [])]
+    voice.show(document, shown)
     warn_of({str(each.element): _did_not(each) for each in failed}, voice)
     return PlcError.exit_code if failed else 0
 
@@ -128,19 +132,6 @@ def _require_good(file: Path, table: Table, faults: Sequence[Fault], *, force: b
         file=str(file),
         faults=fault_documents(kind_of(table), faults),
     )
-
-
-def _tell(plan: WritePlan, table: Table, faults: Sequence[Fault], safety: str | None, voice: Voice) -> None:
-    for line in table_lines(table, faults):
-        voice.say(line)
-    if plan.present.running:
-        voice.warn("the PLC is in RUN: an instruction may use the table while it is half old and half new")
-    voice.say(f"The words before are saved in {safety}" if safety else "The words before are NOT saved.")
-
-
-def _file_stem(file: Path) -> str:
-    """What the safety snapshot's name begins with: 255 bytes is all that a name may have."""
-    return os.fsencode(file.stem)[:150].decode(errors="ignore")
 
 
 def _did_not(each: NotTaken) -> str:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from fatektool.cli.addressee import agree, with_status
 from fatektool.cli.broadcast import broadcast_option, means_all, send_to_all
 from fatektool.cli.documents import where
 from fatektool.cli.options import Connection, connection_options, yes_option
-from fatektool.errors import PlcError, PlcRefused, UsageError
+from fatektool.errors import PlcError, PlcRefused
 from fatektool.protocol.commands import Command, RunStop
 
 if TYPE_CHECKING:
@@ -41,15 +43,20 @@ def _change(connection: Connection, voice: Voice, *, run: bool, broadcast: bool,
         return
     with connection.open(voice, needs=(Command.RUN_STOP,), writes=True) as plc:
         try:
-            before = plc.brief_status().flags.running
+            here = with_status(plc, plc.brief_status())
         except PlcRefused as error:
             raise PlcError(f"{mode} was not sent: the mode comes first, and {error.message}") from error
+        before = here.running
         if before != run:
-            question = (
-                f"Station {connection.station} on {connection.target} is in {_word(running=before)}. {mode}?"
+            question = f"Station {here.station} on {here.target} is in {here.mode}. {mode}?"
+            agree(
+                voice,
+                [] if yes else [("model", here.model or "unknown")],
+                [],
+                question,
+                yes=yes,
+                unchanged=f"the PLC stays in {here.mode}",
             )
-            if not voice.confirm(question, yes=yes):
-                raise UsageError(f"not agreed to: the PLC stays in {_word(running=before)}")
             if run:
                 plc.run()
             else:
@@ -57,12 +64,9 @@ def _change(connection: Connection, voice: Voice, *, run: bool, broadcast: bool,
         document: dict[str, Any] = {
             "schema": "fatektool.mode/1",
             **where(plc),
-            "mode_before": _word(running=before).lower(),
+            "model": here.model,
+            "mode_before": "run" if before else "stop",
             "mode_after": mode.lower(),
         }
     already = " already" if before == run else ""
-    voice.show(document, [f"the PLC is in {mode}{already}"])
-
-
-def _word(*, running: bool) -> str:
-    return "RUN" if running else "STOP"
+    voice.show(document, [f"the PLC is in {mode}{already}", replace(here, running=None).line])

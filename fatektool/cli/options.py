@@ -14,6 +14,7 @@ from fatektool.cli.file_path import FilePath
 from fatektool.cli.inventory_file import complete_target, inventory_option, plc_named
 from fatektool.cli.output import Voice
 from fatektool.cli.station import Station, require_station
+from fatektool.cli.unfinished import warn_of_unfinished
 from fatektool.errors import LineReadOnly, UsageError
 
 if TYPE_CHECKING:
@@ -96,6 +97,7 @@ class Connection:
         limit: Limit | None = None,
         lend: bool = False,
         shared: SharedLine | None = None,
+        finishes: bool = False,
     ) -> Plc:
         """Open the line to one PLC.
 
@@ -106,6 +108,7 @@ class Connection:
             limit: ends everything on this line when it is over.
             lend: others may have the line between two rounds.
             shared: keeps the line open for the next PLC on it.
+            finishes: no warning of a restore that did not complete, as this may finish it.
 
         Raises:
             LineReadOnly: something is to be written to a line that may only be read.
@@ -117,7 +120,7 @@ class Connection:
         if writes and self.read_only:
             raise LineReadOnly(f"'{click.get_current_context().command_path}' writes")
         wait_s = self.lock_wait_s if limit is None else min(self.lock_wait_s, limit.require_rest())
-        return connect(
+        plc = connect(
             self.target,
             station=self.station,
             protocol=self.protocol,
@@ -138,6 +141,9 @@ class Connection:
             waiting=voice.say,
             warn=voice.warn,
         )
+        if not finishes:
+            warn_of_unfinished(self.target, self.station, voice)
+        return plc
 
     def open_line(self, voice: Voice, stack: ExitStack) -> Transport:
         """Open the line alone, for who asks more than one PLC on it; ``stack`` closes it."""

@@ -94,13 +94,9 @@ class Voice:
         Raises:
             UsageError: there is no terminal to ask on.
         """
+        self.require_answer(yes=yes, option=option)
         if yes:
             return True
-        if not can_ask():
-            raise UsageError(
-                "this needs a confirmation, and there is no terminal to ask on: nothing was done",
-                hint=f"add {option}",
-            )
         while True:
             click.echo(f"{visible(question)} [y/N]: ", nl=False, err=True)
             answer = sys.stdin.readline()
@@ -112,6 +108,20 @@ class Voice:
             if word in {"", "n", "no"}:
                 return False
             tell("please answer y or n")
+
+    def require_answer(
+        self, *, yes: bool, option: str = "--yes", unchanged: str = "nothing was done"
+    ) -> None:
+        """Refuse to go on without an answer: neither the option nor anybody to ask.
+
+        Raises:
+            UsageError: there is no terminal to ask on.
+        """
+        if not yes and not can_ask():
+            raise UsageError(
+                f"this needs a confirmation, and there is no terminal to ask on: {unchanged}",
+                hint=f"add {option}",
+            )
 
     def progress(self, unit: str = "pages") -> Bar:
         """A progress bar for a ``with`` statement; nothing where it would be noise."""

@@ -3,25 +3,31 @@
 from __future__ import annotations
 
 import shlex
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import click
 from click.core import ParameterSource
 
+from fatektool.cli.addressee import Addressee, Origin, Pace, agree, model_words, spent
 from fatektool.cli.documents import restore_document
 from fatektool.cli.image_words import warn_of_image
+from fatektool.cli.incomplete import restore_lines
 from fatektool.cli.options import PATH, Connection, connection_options, yes_option
-from fatektool.cli.output import Bar, Voice, can_ask, table
+from fatektool.cli.output import Bar, Voice, table
 from fatektool.cli.pairs import apart
+from fatektool.cli.unfinished import RestoreMark, forget
 from fatektool.errors import RestoreIncomplete, UsageError
 from fatektool.jobs.restore import (
     RestoreOptions,
     RestorePlan,
     RestoreResult,
     carry_out,
-    keep_way_back,
     plan_restore,
 )
+from fatektool.jobs.safety import way_back
+from fatektool.jobs.times import utc
+from fatektool.jobs.unfinished import Unfinished
 from fatektool.program.archive import LARGEST_FILE, Backup
 from fatektool.program.files import read_bounded, require_folder
 from fatektool.program.image import ranges
@@ -31,6 +37,8 @@ from fatektool.protocol.commands import Command
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
+
+    from fatektool.client import Plc
 
 
 @click.command("restore", epilog="Example: fatektool restore press.json -p /dev/ttyUSB0 --stop --run")
@@ -74,33 +82,43 @@ def restore_command(
     folder = None if no_safety_backup else require_folder(safety_dir or file.parent)
     options = RestoreOptions(stop, run, changed_only, rollback, any_header, single_pass)
     with (
-        connection.open(voice, needs=(Command.READ_PAGE, Command.WRITE_PAGE), writes=not dry_run) as plc,
+        connection.open(
+            voice, needs=(Command.READ_PAGE, Command.WRITE_PAGE), writes=not dry_run, finishes=True
+        ) as plc,
         voice.progress() as bar,
     ):
-        clock = plc.link.transport.clock
-        began = clock()
+        pace = Pace(plc)
         plan = plan_restore(plc, backup, options, progress=bar.update)
+        here = Addressee(
+            plc.target, plc.link.station, model_words(plan.present.plc["system"]), running=plan.running
+        )
+        origin = Origin(backup.source.target, backup.source.station, backup.created)
         warn_of_image(backup.program, voice)
         for warning in plan.warnings:
             voice.warn(warning)
+        origin.warn_unless_from(here, file, voice)
+        rows: list[tuple[str, object]] = [*here.rows(), ("file", file), ("from", origin)]
+        if plan.pages:
+            rows.append(("time", pace.time_of(len(plan.pages) + len(plan.wanted.pages))))
         if dry_run:
             result = _nothing_done(plan)
         else:
-            kept = _agree(plan, file, folder, voice, bar, yes=yes)
-            try:
-                result = carry_out(plc, plan, kept, progress=bar.update)
-            except RestoreIncomplete as error:
-                command = _go_on(connection)
-                error.details["command"] = command
-                error.hint = f"mend the cause, then: {command}"
-                raise
+            ask = _Question(plan, rows, here.name, voice, bar, yes=yes)
+            commands = _go_on(connection), _go_on(connection, file, safety_dir)
+            result = _carry_out(plc, ask, file, folder, commands)
             for warning in result.warnings[len(plan.warnings) :]:
                 voice.warn(warning)
-        duration_s = clock() - began
         document = restore_document(
-            plc, file, result, dry_run=dry_run, pages_to_write=len(plan.pages), duration_s=duration_s
+            plc,
+            file,
+            result,
+            dry_run=dry_run,
+            pages_to_write=len(plan.pages),
+            duration_s=pace.passed_s,
+            model=here.model,
+            source=origin.document(),
         )
-    voice.show(document, _lines(plan, result, file, dry_run=dry_run, way_back=folder is not None))
+    voice.show(document, _lines(plan, result, rows, pace, dry_run=dry_run, saves=folder is not None))
 
 
 def _backup_in(file: Path) -> Backup:
@@ -120,31 +138,72 @@ def _backup_in(file: Path) -> Backup:
     return Backup.parse(data, str(file))
 
 
-def _agree(
-    plan: RestorePlan, file: Path, folder: Path | None, voice: Voice, bar: Bar, *, yes: bool
-) -> str | None:
-    """Save the old program, show the plan, ask; give where the old program lies."""
-    will_run = plan.options.run and not plan.running
-    if not plan.pages and not will_run:
-        return None
-    bar.pause()  # while it is shown, stderr is rich's, which older versions say is no terminal
-    if not yes and not can_ask():
-        raise UsageError(
-            "a restore needs a confirmation, and there is no terminal to ask on: nothing was written",
-            hint="add --yes",
+@dataclass(frozen=True, slots=True)
+class _Question:
+    """What is agreed to before anything is written."""
+
+    plan: RestorePlan
+    rows: list[tuple[str, object]]
+    plc: str
+    voice: Voice
+    bar: Bar
+    yes: bool
+
+    def ask(self, kept: str | None) -> None:
+        """Show the plan and ask, if anything is to be done; ``kept`` is where the old program lies."""
+        if self.plan.pages:
+            lines, question = [*_plan_lines(self.plan, kept)], f"Write the program into {self.plc}?"
+        elif self.plan.options.run and not self.plan.running:
+            lines, question = [], f"The PLC holds the program on file already. RUN {self.plc}?"
+        else:
+            return
+        self.bar.pause()  # while it is shown, stderr is rich's, which older versions say is no terminal
+        agree(
+            self.voice,
+            self.rows,
+            lines,
+            question,
+            yes=self.yes,
+            unchanged="the PLC's program is unchanged",
         )
-    kept = None
+        self.bar.go_on()
+
+
+def _carry_out(
+    plc: Plc, question: _Question, file: Path, folder: Path | None, commands: tuple[str, str]
+) -> RestoreResult:
+    """Save the old program, ask, and restore.
+
+    Args:
+        plc: the PLC.
+        question: what is agreed to.
+        file: what is restored.
+        folder: where the old program is saved.
+        commands: what finishes it, given here, and given in another folder.
+    """
+    command, elsewhere = commands
+    plan, voice = question.plan, question.voice
     if plan.pages:
-        kept = None if folder is None else str(keep_way_back(plan, file, folder))
-        for line in _plan_lines(plan, kept):
-            voice.say(line)
-        question = "Write the program into the PLC?"
-    else:
-        question = "The PLC holds the program on file already. RUN?"
-    if not voice.confirm(question, yes=yes):
-        raise UsageError("not agreed to: the PLC's program is unchanged")
-    bar.go_on()
-    return kept
+        voice.require_answer(yes=question.yes, unchanged="nothing was written")
+    with way_back(plan.present, plan.wanted, file, folder if plan.pages else None) as kept:
+        question.ask(kept.name)
+        safety = None if kept.path is None else str(kept.path.absolute())
+        record = Unfinished(plc.target, plc.link.station, utc(), str(file.absolute()), safety, elsewhere)
+        try:
+            result = carry_out(
+                plc,
+                plan,
+                kept.name,
+                progress=question.bar.update,
+                mark=RestoreMark(record, voice, kept),
+            )
+        except RestoreIncomplete as error:
+            error.details["command"] = command
+            error.hint = f"mend the cause, then: {command}"
+            error.lines = restore_lines(error, question.plc, command)
+            raise
+    forget(plc.target, plc.link.station, voice)
+    return result
 
 
 def _plan_lines(plan: RestorePlan, kept: str | None) -> Iterator[str]:
@@ -175,28 +234,47 @@ def _nothing_done(plan: RestorePlan) -> RestoreResult:
 
 
 def _lines(
-    plan: RestorePlan, result: RestoreResult, file: Path, *, dry_run: bool, way_back: bool
+    plan: RestorePlan,
+    result: RestoreResult,
+    rows: list[tuple[str, object]],
+    pace: Pace,
+    *,
+    dry_run: bool,
+    saves: bool,
 ) -> Iterator[str]:
+    facts = dict(rows)
     if plan.comparison.same:
-        yield f"same: the PLC's program is the one in {file} already; nothing was written"
+        yield f"same: the PLC's program is the one in {facts['file']} already; nothing was written"
     elif dry_run:
-        yield from _plan_lines(plan, "a safety backup before the first page is written" if way_back else None)
+        yield from table(rows)
+        yield from _plan_lines(plan, "a safety backup before the first page is written" if saves else None)
         yield "dry run: nothing was written"
     else:
-        rows = [
-            ("restored", f"{file}, read back and proven"),
-            ("pages", f"{result.pages_written} written, {result.pages_equal} were equal already"),
-            ("old program", result.safety_backup or "not saved"),
-        ]
-        yield from table(rows)
+        yield from table(
+            [
+                ("restored", f"{facts['file']}, read back and proven"),
+                ("from", facts["from"]),
+                ("PLC", facts["PLC"]),
+                ("model", facts["model"]),
+                ("pages", f"{result.pages_written} written, {result.pages_equal} were equal already"),
+                ("old program", result.safety_backup or "not saved"),
+                ("took", spent(pace.passed_s)),
+            ]
+        )
     if not dry_run:
         yield f"the PLC is in {result.mode_after.upper()}"
 
 
-def _go_on(connection: Connection) -> str:
-    """The one command that finishes an unfinished restore: the same again, for the pages that are left."""
+def _go_on(connection: Connection, *places: Path | None) -> str:
+    """The one command that finishes an unfinished restore: the same again, for the pages that are left.
+
+    Args:
+        connection: the target.
+        places: paths that are made whole, for a command that may be given in another folder.
+    """
     context = click.get_current_context()
-    words = [word for word in context.find_root().obj if word != "--changed-only"]
+    whole = {str(place): str(place.absolute()) for place in places if place is not None}
+    words = [whole.get(word, word) for word in context.find_root().obj if word != "--changed-only"]
     at = words.index("restore") + 1
     if context.get_parameter_source("port") is ParameterSource.ENVIRONMENT:
         words[at:at] = ["-p", connection.target]

@@ -2,26 +2,25 @@
 
 from __future__ import annotations
 
-import os
-import shlex
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import click
-from click.core import ParameterSource
 
+from fatektool.cli.addressee import Origin, Pace, look
 from fatektool.cli.documents import where
 from fatektool.cli.modbus_map import modbus_map_option
 from fatektool.cli.options import PATH, Connection, connection_options, yes_option
-from fatektool.cli.output import Voice, can_ask
+from fatektool.cli.output import Voice, table
 from fatektool.cli.pairs import apart
 from fatektool.cli.read import shown, warn_of
-from fatektool.errors import PlcError, RestoreIncomplete, UsageError
+from fatektool.cli.way_back import RegisterWrite, same_again
+from fatektool.errors import PlcError
 from fatektool.jobs.registers import named
 from fatektool.jobs.snapshot import load_snapshot
 from fatektool.jobs.snapshot_apply import ApplyPlan, apply_plan, plan_apply
-from fatektool.jobs.snapshot_formats import as_json
-from fatektool.jobs.times import stamp
-from fatektool.program.files import require_folder, write_new
+from fatektool.planner import plan_writes
+from fatektool.program.files import require_folder
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -69,35 +68,35 @@ def apply_command(
     safety: str | None = None
     failed: list[NotTaken] = []
     with connection.open(voice, writes=not dry_run) as plc:
+        pace = Pace(plc)
         plan = plan_apply(plc, snapshot, only)
         _warn(plan, voice)
-        lines = list(_plan_lines(plan, snapshot, file))
+        here = look(plc)
+        origin = Origin(snapshot.target, snapshot.station, snapshot.time)
+        origin.warn_unless_from(here, file, voice)
+        rows: list[tuple[str, object]] = [("file", file), ("from", origin)]
+        lines = list(_plan_lines(plan, snapshot))
         if plan.changes and not dry_run:
-            if not yes and not can_ask():
-                raise UsageError(
-                    "this needs a confirmation, and there is no terminal to ask on: nothing was written",
-                    hint="add --yes",
-                )
-            safety = None if folder is None else str(_save_safety(plan.present, file, folder))
-            for line in lines:
-                voice.say(line)
-            voice.say(
-                f"The values before are saved in {safety}" if safety else "The values before are NOT saved."
+            requests = plan_writes(plan.writes, plc.link.codec)
+            work = RegisterWrite(
+                here,
+                plan.present,
+                file.stem,
+                folder,
+                [*rows, ("time", pace.time_of(2 * len(requests)))],
+                lines,
+                len(plan.writes),
+                same_again(connection, "apply"),
+                "the snapshot was not applied whole",
             )
-            if not voice.confirm(f"Write {len(plan.changes)} values into the PLC?", yes=yes):
-                raise UsageError("not agreed to: nothing was written")
-            try:
-                failed = apply_plan(plc, plan, safety)
-            except RestoreIncomplete as error:
-                command = _go_on(connection)
-                error.details["command"] = command
-                where_before = (
-                    f"the values before lie in {safety}" if safety else "the values before are not saved"
-                )
-                error.hint = f"{where_before}; mend the cause, then: {command}"
-                raise
+            safety, failed = work.carry_out(voice, partial(apply_plan, plc, plan), yes=yes)
         document = _document(plc, file, plan, snapshot, failed, safety=safety, dry_run=dry_run)
-    voice.show(document, _result_lines(plan, lines, failed, dry_run=dry_run))
+    document |= here.document() | {"source": origin.document()}
+    shown = list(_result_lines(plan, lines, failed, dry_run=dry_run))
+    if plan.changes:
+        facts = [*here.rows(), *rows]
+        shown = [*table(facts), *shown] if dry_run else [*shown, f"from {origin}", f"into {here.line}"]
+    voice.show(document, shown)
     names = plan.keys()
     warn_of({names.get(each.element, str(each.element)): _did_not(each) for each in failed}, voice)
     return PlcError.exit_code if failed or plan.refused else 0
@@ -106,16 +105,6 @@ def apply_command(
 def _did_not(each: NotTaken) -> str:
     digits = max(1, each.element.kind.bits // 4)
     return each.words(lambda raw: f"{raw:0{digits}X}", str(each.element))
-
-
-def _go_on(connection: Connection) -> str:
-    """The one command that finishes what is left: the same again."""
-    context = click.get_current_context()
-    words = list(context.find_root().obj)
-    if context.get_parameter_source("port") is ParameterSource.ENVIRONMENT:
-        at = words.index("apply") + 1
-        words[at:at] = ["-p", connection.target]
-    return shlex.join(["fatektool", *words])
 
 
 def _warn(plan: ApplyPlan, voice: Voice) -> None:
@@ -130,14 +119,7 @@ def _warn(plan: ApplyPlan, voice: Voice) -> None:
     warn_of({key: f"not written: {error}" for key, error in plan.refused.items()}, voice)
 
 
-def _save_safety(present: Snapshot, file: Path, folder: Path) -> Path:
-    start = os.fsencode(file.stem)[:150].decode(errors="ignore")  # 255 bytes is all that a name may have
-    stem = f"{start}.safety-st{present.station:02}-{stamp(present.time)}"
-    return write_new(folder, stem, "json", as_json(present).encode())
-
-
-def _plan_lines(plan: ApplyPlan, snapshot: Snapshot, file: Path) -> Iterator[str]:
-    yield f"{file}: taken {snapshot.time} from {snapshot.target}, station {snapshot.station}"
+def _plan_lines(plan: ApplyPlan, snapshot: Snapshot) -> Iterator[str]:
     width = max((len(key) for key, *_ in plan.changes), default=0)
     for key, *_ in plan.changes:
         before, after = plan.present.values[key], snapshot.values[key]

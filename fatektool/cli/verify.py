@@ -11,6 +11,7 @@ from fatektool.cli.documents import verify_document
 from fatektool.cli.options import PATH, Connection, connection_options
 from fatektool.cli.program_files import program_file
 from fatektool.cli.report import report_option, write_report
+from fatektool.cli.unfinished import forget, warn_of_unfinished
 from fatektool.jobs.verify import verify_file
 from fatektool.protocol.commands import Command
 
@@ -30,11 +31,15 @@ def verify_command(connection: Connection, voice: Voice, *, file: Path, report: 
     What seems to differ is read twice. The PLC may run.
     """
     on_file = program_file(file, voice)
-    with connection.open(voice, needs=(Command.READ_PAGE,)) as plc, voice.progress() as bar:
+    with connection.open(voice, needs=(Command.READ_PAGE,), finishes=True) as plc, voice.progress() as bar:
         clock = plc.link.transport.clock
         began = clock()
         found = verify_file(plc, on_file, progress=bar.update)
         document = verify_document(plc, file, on_file.sha256, found, clock() - began)
+    if found.same:
+        forget(connection.target, connection.station, voice)
+    else:
+        warn_of_unfinished(connection.target, connection.station, voice)
     count = len(found.a.pages)
     same = f"same: the PLC's program is the one in {file}, {count} pages"
     if found.pages.b_has_more:

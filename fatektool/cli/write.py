@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from fatektool.cli.addressee import look
 from fatektool.cli.broadcast import broadcast_option, means_all, send_to_all
 from fatektool.cli.documents import where
 from fatektool.cli.modbus_map import modbus_map_option
@@ -64,14 +65,16 @@ def write_command(
             }
             for each in failed
         ]
+        here = look(plc)
         document = {
             "schema": "fatektool.write/1",
             **where(plc),
+            **here.document(),
             "written": len(pairs) - len(failed),
             "not_taken": not_taken,
         }
     taken = len(pairs) - len(failed)
-    lines = [f"{taken} of {len(pairs)} elements written and read back"]
+    lines = [f"{taken} of {len(pairs)} elements written and read back", here.line]
     voice.show(document, lines)
     told = {by_element[each.element].key: _told(by_element[each.element], each) for each in failed}
     warn_of(told, voice)

@@ -19,13 +19,21 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fatektool.errors import DataError, LineError, PlcError, PlcNotReady, UsageError
+from fatektool.errors import (
+    DataError,
+    FatektoolError,
+    LineError,
+    PlcError,
+    PlcNotReady,
+    RestoreIncomplete,
+    UsageError,
+)
 from fatektool.jobs.backup import backup_of
 from fatektool.jobs.fit import require_kin, require_size
 from fatektool.jobs.progress import Progress, no_progress
 from fatektool.jobs.reading import Reading, read_program, read_program_twice
 from fatektool.jobs.rewrite import Rewrite
-from fatektool.jobs.safety import find_way_back, save_safety_backup
+from fatektool.jobs.safety import way_back
 from fatektool.program.compare import Comparison, compare_images
 from fatektool.program.image import ranges
 
@@ -34,6 +42,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fatektool.client import Plc
+    from fatektool.jobs.unfinished import Mark
     from fatektool.program.archive import Backup
     from fatektool.program.image import Program
 
@@ -170,7 +179,12 @@ def _read_present(plc: Plc, options: RestoreOptions, progress: Progress) -> Read
 
 
 def carry_out(
-    plc: Plc, plan: RestorePlan, safety_backup: str | None, *, progress: Progress = no_progress
+    plc: Plc,
+    plan: RestorePlan,
+    safety_backup: str | None,
+    *,
+    progress: Progress = no_progress,
+    mark: Mark | None = None,
 ) -> RestoreResult:
     """Do what was planned: STOP, write, read back, RUN.
 
@@ -179,6 +193,7 @@ def carry_out(
         plan: of this PLC, just now.
         safety_backup: where the old program lies, for messages.
         progress: told of each page.
+        mark: takes note that pages are being written.
 
     Raises:
         RestoreIncomplete: the PLC's program is neither old nor new; ``details`` say which pages are.
@@ -193,9 +208,7 @@ def carry_out(
         if running:
             plc.stop()
             running = False
-        rewrite = Rewrite(plc, plan.wanted, plan.present.program, safety_backup, progress)
-        rewrite.write(plan.pages, rollback=plan.options.rollback)
-        warnings += rewrite.warnings
+        warnings += _write(plc, plan, safety_backup, progress, mark)
     if plan.options.run and not running:
         try:
             plc.run()
@@ -219,6 +232,26 @@ def carry_out(
     )
 
 
+def _write(
+    plc: Plc, plan: RestorePlan, safety_backup: str | None, progress: Progress, mark: Mark | None
+) -> tuple[str, ...]:
+    """Write the pages and read all back; give what the user should know."""
+    rewrite = Rewrite(plc, plan.wanted, plan.present.program, safety_backup, progress)
+    if mark is not None:
+        mark.begin()
+    try:
+        rewrite.write(plan.pages, rollback=plan.options.rollback)
+    except RestoreIncomplete:
+        raise
+    except FatektoolError:  # nothing was changed, or it is rolled back
+        if mark is not None:
+            mark.end(proven=False)
+        raise
+    if mark is not None:
+        mark.end(proven=True)
+    return rewrite.warnings
+
+
 def _require_as_planned(plc: Plc, plan: RestorePlan) -> None:
     """Look once more before the first page: a question may have waited for its answer for a long time."""
     status = plc.detailed_status()
@@ -237,18 +270,6 @@ def _require_as_planned(plc: Plc, plan: RestorePlan) -> None:
             f"the PLC {what} since its program was read: nothing was written",
             hint="was it exchanged meanwhile? run the restore again",
         )
-
-
-def keep_way_back(plan: RestorePlan, file: Path, folder: Path) -> Path:
-    """Have the old program on disk: the safety backup of an unfinished run, or a new one.
-
-    Raises:
-        UsageError: the folder cannot be written.
-        DataError: the disk is full or broken.
-    """
-    present = plan.present
-    found = find_way_back(present.program, plan.wanted, present.source.station, file, folder)
-    return found or save_safety_backup(present, file, folder)
 
 
 def restore(
@@ -280,9 +301,7 @@ def restore(
         LineError: see ``plan_restore`` and ``carry_out``.
     """
     plan = plan_restore(plc, backup, options, progress=progress)
-    kept: Path | None = None
-    if plan.pages:
-        kept = None if safety_folder is None else keep_way_back(plan, file, safety_folder)
-        if not confirm(plan, kept):
+    with way_back(plan.present, plan.wanted, file, safety_folder if plan.pages else None) as kept:
+        if plan.pages and not confirm(plan, kept.path):
             raise UsageError("not agreed to: the PLC's program is unchanged")
-    return carry_out(plc, plan, None if kept is None else str(kept), progress=progress)
+        return carry_out(plc, plan, kept.name, progress=progress, mark=kept)

@@ -79,7 +79,7 @@ class Press:
 
     def file(self, name: str, image: Program) -> Path:
         path = self.folder / name
-        save_backup(backup(image), path)
+        save_backup(backup(image, target=self.target), path)
         return path
 
     def set(self, *flags: str) -> None:

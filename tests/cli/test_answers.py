@@ -108,10 +108,19 @@ def test_a_restore_that_does_not_complete(press: Press, cli: Cli, *, as_json: bo
         words = ["--timeout", "60", "--retries", "0", "--yes", *(["--json"] if as_json else [])]
         done = cli("restore", press.new, "-p", door.target, *words)
         assert done.code == 6
-        assert done.err.splitlines()[-1].startswith("fatektool: the restore did not complete (")
         (safety,) = press.safety
         again = f"fatektool restore --changed-only {press.new} -p {door.target} {' '.join(words)}"
-        assert done.err.rstrip().endswith(f"; mend the cause, then: {again}")
+        lines = done.err.splitlines()
+        *_, pages_new, pages_in_doubt, pages_old, way_back, mend, command = lines
+        said = lines[lines.index("fatektool: the restore did not complete") + 1 :]
+        assert said[0] == f"  PLC          station 1 on {door.target}, in STOP; it must not RUN"
+        assert said[1].startswith("  cause        ")
+        assert pages_new == "  page 0-2     written, not read back"
+        assert pages_in_doubt == "  page 3       uncertain"
+        assert pages_old == "  page 4-7     the old program"
+        assert way_back == f"  old program  {safety}"
+        assert mend == "mend the cause, then go on with:"
+        assert command == again
         if as_json:
             details = done.document("error")["error"]["details"]
             assert details["pages_written"] == [0, 1, 2]

@@ -95,7 +95,7 @@ def test_a_backup_is_not_overwritten_with_its_own_pages(press: Press, cli: Cli, 
 def test_what_inspect_shows(press: Press, cli: Cli) -> None:
     rows = dict(re.split(r"  +", line, maxsplit=1) for line in cli("inspect", press.old).out.splitlines())
     assert rows["file"] == f"{press.old}: whole, hash and header checked"
-    assert rows["source"] == "station 1 on /dev/ttyUSB0, facon, 9600 7E1"
+    assert rows["source"] == f"station 1 on {press.target}, facon, 9600 7E1"
     assert rows["ladder size"] == "400 words, 8 pages, 7 not empty"
     assert rows["sha256"] == OLD.sha256
 
@@ -109,7 +109,16 @@ def test_a_restore_keeps_the_old_program_beside_the_file(press: Press, cli: Cli)
     assert press.program == NEW
     (safety,) = press.safety
     assert load_backup(safety).program == OLD
-    assert done.err.splitlines() == [
+    facts = [
+        f"PLC    station 1 on {press.target}",
+        "model  MC, 28 points, OS 3.1",
+        "mode   STOP",
+        f"file   {press.new}",
+        f"from   station 1 on {press.target}, 2026-11-22T03:15:00Z",
+    ]
+    assert done.err.splitlines()[:5] == facts
+    assert done.err.splitlines()[5].startswith("time   ")
+    assert done.err.splitlines()[6:] == [
         "The PLC's program differs in page 1-7 (448 words).",
         f"The old program is saved in {safety}",
         "8 of 8 pages will be written, then all read back.",
@@ -123,7 +132,9 @@ def test_a_dry_run_tells_what_would_be_done(press: Press, cli: Cli) -> None:
     press.set("running")
     words = ["restore", press.new, "-p", press.target, "--dry-run", "--stop", "--run", "--changed-only"]
     done = cli(*words)
-    assert done.out.splitlines() == [
+    facts = done.out.splitlines()[:6]
+    assert [line.split()[0] for line in facts] == ["PLC", "model", "mode", "file", "from", "time"]
+    assert done.out.splitlines()[6:] == [
         "The PLC's program differs in page 1-7 (448 words).",
         "The old program is saved in a safety backup before the first page is written",
         "The PLC is in RUN and will be stopped.",
@@ -165,10 +176,11 @@ def test_run_and_stop(press: Press, cli: Cli, command: str) -> None:
     if command == "stop":
         press.set("running")
     done = cli(command, "-p", press.target, "--yes")
-    assert (done.code, done.out) == (0, f"the PLC is in {command.upper()}\n")
+    facts = f"station 1 on {press.target} (FBE, 13K steps)\n"
+    assert (done.code, done.out) == (0, f"the PLC is in {command.upper()}\n{facts}")
     assert press.running == (command == "run")
     again = cli(command, "-p", press.target)
-    assert (again.code, again.out) == (0, f"the PLC is in {command.upper()} already\n")
+    assert (again.code, again.out) == (0, f"the PLC is in {command.upper()} already\n{facts}")
 
 
 # --- port, status, trace ---------------------------------------------------------------------------------

@@ -21,7 +21,7 @@ CTRL_C, CTRL_D = "\x03", "\x04"
 
 def test_restore_asks_and_yes_is_yes(press: Press) -> None:
     with Terminal("restore", press.new, "-p", press.target) as terminal:
-        terminal.read_until("Write the program into the PLC? [y/N]: ")
+        terminal.read_until("? [y/N]: ")
         (safety,) = press.safety  # on disk before the question
         assert load_backup(safety).program == OLD
         assert press.program == OLD
@@ -29,6 +29,13 @@ def test_restore_asks_and_yes_is_yes(press: Press) -> None:
             "The PLC's program differs in page 1-7 (448 words).",
             f"The old program is saved in {safety.name}",
             "8 of 8 pages will be written, then all read back.",
+            "PLC    station 1 on sim:plc.state",
+            "model  MC, 28 points, OS 3.1",
+            "mode   STOP",
+            "file   new.json",
+            "from   station 1 on sim:plc.state, 2026-11-22T03:15:00Z",
+            "time   ",
+            "Write the program into station 1 on sim:plc.state? [y/N]: ",
         ):
             assert line in terminal.text.replace(f"{press.folder}/", "").replace("\n", " ")
         terminal.type("y\n")
@@ -60,6 +67,7 @@ def test_an_answer(press: Press, command: str, keys: str, code: int) -> None:
         assert press.running == (command == "run")
         return
     assert press.program == OLD
+    assert press.safety == []  # nothing needs a way back
     assert press.running == (command == "stop")
     assert "Traceback" not in terminal.text
     if code == 130:

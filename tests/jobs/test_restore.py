@@ -140,15 +140,16 @@ def test_a_restore_that_is_not_agreed_to_changes_nothing(tmp_path: Path) -> None
 
     def no(plan: RestorePlan, kept: Path | None) -> bool:
         shown.append((plan, kept))
+        assert kept is not None
+        assert load_backup(kept).program == OLD
         return False
 
     with pytest.raises(UsageError, match="not agreed to: the PLC's program is unchanged"):
         restore(bench.plc, backup(NEW), tmp_path / "x.json", confirm=no, options=RestoreOptions(stop=True),
                 safety_folder=tmp_path)  # fmt: skip
-    ((plan, kept),) = shown
+    ((plan, _),) = shown
     assert plan.pages == tuple(range(PAGES))
-    assert kept is not None
-    assert load_backup(kept).program == OLD
+    assert not list(tmp_path.iterdir())  # nothing needs a way back
     assert bench.pages == OLD.pages
     assert bench.device.running
 

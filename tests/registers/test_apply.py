@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from fatektool.cli import run, snapshot_apply
+from fatektool.cli import run
 from fatektool.errors import DataError
 from fatektool.jobs.registers import read_elements
 from fatektool.jobs.selection import parse_items
@@ -81,7 +81,9 @@ def test_only_what_differs_is_written(plant: Plant, place: Path, monkeypatch: py
     assert not any(map(is_write, sent))
     assert not safety(place)
     done = plant.cli("snapshot", "apply", "monday.json", "--dry-run", "-q")
-    assert done.out.splitlines()[1:] == [
+    facts, (*rest,) = done.out.splitlines()[:5], done.out.splitlines()[5:]
+    assert [line.split()[0] for line in facts] == ["PLC", "model", "mode", "file", "from"]
+    assert rest == [
         "R7  6 -> 5", "M3  off -> on", "D4  2.5 -> 1.5", "dry run: nothing was written",
     ]  # fmt: skip
     document = plant.json("apply", "snapshot", "apply", "monday.json", "--yes")
@@ -197,9 +199,9 @@ def test_names_of_a_specification(plant: Plant, place: Path) -> None:
 def test_it_asks(plant: Plant, place: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (place / "a.json").write_text(as_json(snapshot_of("R0")))
     plant.write("R0=1")
-    assert "--yes" in error_of(plant.cli("snapshot", "apply", "a.json"), 2)
+    alone = plant.cli("snapshot", "apply", "a.json")
+    assert (alone.code, "--yes" in alone.err.splitlines()[-1]) == (2, True)
     assert not safety(place)
-    monkeypatch.setattr(snapshot_apply, "can_ask", lambda: True)
     monkeypatch.setattr("fatektool.cli.output.can_ask", lambda: True)
     monkeypatch.setattr("sys.stdin.readline", lambda: "n\n", raising=False)
     done = plant.cli("snapshot", "apply", "a.json")
@@ -207,6 +209,7 @@ def test_it_asks(plant: Plant, place: Path, monkeypatch: pytest.MonkeyPatch) -> 
     assert "R0  1 -> 0" in done.err
     assert done.err.splitlines()[-1].endswith("nothing was written")
     assert plant.register(0) == 1
+    assert not safety(place)  # nothing needs a way back
 
 
 def test_on_a_terminal(plant: Plant, place: Path) -> None:
@@ -226,7 +229,7 @@ def test_on_a_terminal(plant: Plant, place: Path) -> None:
 def test_in_run_it_warns(plant: Plant, place: Path) -> None:
     (place / "a.json").write_text(as_json(snapshot_of("R0")))
     plant.change(running=True)
-    assert plant.cli("snapshot", "apply", "a.json", "--yes").err == ""
+    assert "in RUN" not in plant.cli("snapshot", "apply", "a.json", "--yes").err
     plant.write("R0=1")
     done = plant.cli("snapshot", "apply", "a.json", "--yes")
     assert done.code == 0
@@ -265,10 +268,13 @@ def test_the_message_of_a_cut_line(plant: Plant, place: Path, monkeypatch: pytes
     cut_in_write(monkeypatch, 1)
     done = plant.cli("snapshot", "apply", "a.json", "--yes", "--safety-dir", ".")
     assert done.code == 6
-    line = done.err.splitlines()[-1]
-    assert "some of 100 values may be written" in line
-    assert safety(place)[0].name in line
-    assert "fatektool snapshot apply" in line
+    *_, headline, plc, cause, before, mend, command = done.err.splitlines()
+    assert headline == "fatektool: the snapshot was not applied whole: some of 100 values may be written"
+    assert plc.split(maxsplit=1) == ["PLC", f"station 1 on {plant.target}"]
+    assert cause.split()[0] == "cause"
+    assert before.split() == ["values", "before", safety(place)[0].name]
+    assert mend == "mend the cause, then go on with:"
+    assert command.startswith(f"fatektool snapshot apply -p {plant.target} a.json --yes")
 
 
 def test_an_interrupt_in_the_middle(plant: Plant, place: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -281,7 +287,7 @@ def test_an_interrupt_in_the_middle(plant: Plant, place: Path, monkeypatch: pyte
     monkeypatch.setattr("fatektool.jobs.snapshot_apply.write_elements", interrupted)
     done = plant.cli("snapshot", "apply", "a.json", "--yes")
     assert done.code == 6
-    assert "interrupted" in done.err.splitlines()[-1]
+    assert "  cause          interrupted" in done.err.splitlines()
 
 
 @pytest.mark.parametrize(

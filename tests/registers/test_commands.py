@@ -105,7 +105,8 @@ def test_write_says_what_did_not_take(plant: Plant) -> None:
     assert "illegal address" in failed["R9000"]["reason"]
     done = plant.cli(*words)
     assert done.code == 4
-    assert done.out == "2 of 8 elements written and read back\n"
+    where = f"station 1 on {plant.target} (FBE, 13K steps, STOP)"
+    assert done.out == f"2 of 8 elements written and read back\n{where}\n"
     assert (
         "warning: R9000: did not take: expected 1: not tried, as it cannot be read either: the PLC refused"
         in done.err
@@ -147,12 +148,13 @@ def test_forcing(plant: Plant) -> None:
         "X4": {"on": False, "disabled": True},
         "M1": {"on": False, "disabled": True},
     }
-    assert plant.cli("discrete", "set", "X4", "M1").out == "X4  on   DISABLED\nM1  on   DISABLED\n"
-    assert plant.cli("discrete", "reset", "X3", "-q").out == "X3  off  DISABLED\n"
+    where = f"station 1 on {plant.target} (FBE, 13K steps, STOP)\n"
+    assert plant.cli("discrete", "set", "X4", "M1").out == f"X4  on   DISABLED\nM1  on   DISABLED\n{where}"
+    assert plant.cli("discrete", "reset", "X3", "-q").out == f"X3  off  DISABLED\n{where}"
     listed = plant.cli("discrete", "list", "X3-X5", "M1")
     assert " ".join(listed.out.split()) == "X3 off DISABLED X4 on DISABLED X5 off enabled M1 on DISABLED"
     assert plant.cli("discrete", "enable", "X3:2", "M1").out == (
-        "X3  on   enabled\nX4  off  enabled\nM1  on   enabled\n"
+        f"X3  on   enabled\nX4  off  enabled\nM1  on   enabled\n{where}"
     )
     states = plant.json("discrete", "discrete", "list", "Y10", "Y0-Y300", code=4)["discretes"]
     assert list(states)[:2] == ["Y10", "Y0"]
