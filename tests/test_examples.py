@@ -10,6 +10,11 @@ from pathlib import Path
 
 import pytest
 
+from fatektool.connection import connect
+from fatektool.protocol.elements import Element
+from fatektool.simulator.build import build_simulation
+from fatektool.simulator.servers import Server, running
+
 EXAMPLES = Path(__file__).parent.parent / "examples"
 
 
@@ -89,3 +94,17 @@ def test_my_client(tmp_path: Path) -> None:
     script = str(EXAMPLES / "test_my_client.py")
     done = run(tmp_path, sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", script)
     assert done.returncode == 0, done.stdout
+
+
+def test_own_socket(tmp_path: Path) -> None:
+    server = Server(build_simulation())
+    host, port = server.open_tcp().address.removeprefix("tcp://").split(":")
+    script = str(EXAMPLES / "own_socket.py")
+    with running(server), connect(f"tcp://{host}:{port}", timeout_s=5) as plc:
+        plc.write_registers(Element.parse("R5"), [7, 65535])
+        plc.close()
+        done = run(tmp_path, sys.executable, script, host, port, "R5", "2")
+        assert (done.returncode, done.stdout) == (0, "7 65535\n"), done.stderr
+        refused = run(tmp_path, sys.executable, script, host, port, "R60000", "1")
+        assert "the PLC refused: illegal address" in refused.stderr
+    assert "usage: " in run(tmp_path, sys.executable, script).stderr
