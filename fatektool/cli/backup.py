@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import sys
 from pathlib import Path
 
 import click
@@ -13,6 +12,7 @@ from fatektool.cli.image_words import warn_of_image
 from fatektool.cli.options import PATH, Connection, connection_options
 from fatektool.cli.output import Voice, table
 from fatektool.cli.pairs import together
+from fatektool.cli.streams import print_bytes
 from fatektool.errors import FatektoolError, UsageError
 from fatektool.jobs.backup import backup
 from fatektool.jobs.times import stamp, utc
@@ -64,8 +64,7 @@ def backup_command(
     if raw is not None:
         _write_raw(raw, found, path, overwrite=force)
     if path == STDOUT:
-        sys.stdout.buffer.write(found.to_bytes())
-        sys.stdout.buffer.flush()
+        print_bytes(found.to_bytes())
         return
     program = found.program
     size = f"{program.ladder_words} words, {len(program.pages)} pages"

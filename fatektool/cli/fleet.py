@@ -12,9 +12,9 @@ from fatektool.cli.fleet_check import check_command
 from fatektool.cli.fleet_jobs import backup_work, snapshot_work, status_work, verify_work
 from fatektool.cli.fleet_run import Orders, ended, fleet_options, run_fleet
 from fatektool.cli.options import PATH
+from fatektool.cli.places import require_folder_for
 from fatektool.errors import FatektoolError, UsageError
 from fatektool.jobs.snapshot_store import Keep
-from fatektool.program.files import require_folder
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -80,7 +80,7 @@ def backup_command(
     if remote is not None and history is None:
         raise UsageError("--push goes with --history DIR")
     if folder is not None:
-        require_folder(folder)
+        require_folder_for(folder, voice)
     with nullcontext() if history is None else _opened(history, voice) as kept:
         work = backup_work(voice, folder, kept, single_pass=single_pass, any_header=any_header)
         document, interrupted = run_fleet("backup", orders, alarms, voice, work)
@@ -126,7 +126,7 @@ def verify_command(orders: Orders, alarms: Alarms, voice: Voice) -> int:
 @fleet_options
 def snapshot_command(orders: Orders, alarms: Alarms, voice: Voice, *, folder: Path, keep: str | None) -> int:
     """Read each PLC's data, as the specification says that the inventory names."""
-    require_folder(folder)
+    require_folder_for(folder, voice)
     kept = None if keep is None else Keep.parse(keep)
     document, interrupted = run_fleet("snapshot", orders, alarms, voice, snapshot_work(voice, folder, kept))
     return ended("snapshot", document, voice, alarms, interrupted=interrupted)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from contextlib import closing
 from functools import wraps
 from itertools import chain, islice
@@ -29,6 +28,7 @@ from fatektool.cli.options import PATH, Seconds, voice_options
 from fatektool.cli.output import table
 from fatektool.cli.pairs import together
 from fatektool.cli.report import report_option
+from fatektool.cli.streams import print_bytes
 from fatektool.errors import PushFailed, UsageError
 from fatektool.history.checking import check
 from fatektool.history.history import History
@@ -198,8 +198,7 @@ def export_command(which: str, file: Path, folder: Path, voice: Voice, *, force:
     history = History(folder)
     together("force", holds=file != STDOUT, needs="a file")
     if file == STDOUT:
-        sys.stdout.buffer.write(history.show(name, revision).data)
-        sys.stdout.buffer.flush()
+        print_bytes(history.show(name, revision).data)
         return
     require_place(file, overwrite=force)
     found = history.export(name, revision, file, overwrite=force)

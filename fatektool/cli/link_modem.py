@@ -16,15 +16,16 @@ from fatektool.cli.link_ports import modem_rows
 from fatektool.cli.options import PATH, Connection, connection_options, yes_option
 from fatektool.cli.output import Voice, table
 from fatektool.cli.pairs import apart
+from fatektool.cli.places import safety_folder
 from fatektool.cli.read import warn_of
 from fatektool.cli.way_back import RegisterWrite, same_again
 from fatektool.errors import PlcError
 from fatektool.jobs.link_host import LinkHost, read_host
 from fatektool.jobs.link_modem import ModemReport, ModemSettings, plan_modem, read_modem, write_modem
-from fatektool.program.files import require_folder
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
 
     from fatektool.client import Plc
     from fatektool.jobs.link_table import Change, WritePlan
@@ -108,7 +109,7 @@ def set_command(
     settings change.
     """
     apart("no_safety_snapshot", "safety_dir")
-    folder = None if no_safety_snapshot else require_folder(safety_dir or Path())
+    folder = None if no_safety_snapshot else safety_folder(safety_dir, None, voice, dry_run=dry_run)
     settings = ModemSettings(
         number, on, pulse, rings, dial_control, None if profile is None else int(profile == "user")
     )

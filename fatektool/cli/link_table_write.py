@@ -14,13 +14,14 @@ from fatektool.cli.link_host import host_document
 from fatektool.cli.link_table_view import fault_documents, table_lines
 from fatektool.cli.options import PATH, Connection, connection_options, yes_option
 from fatektool.cli.pairs import apart
+from fatektool.cli.places import safety_folder
 from fatektool.cli.read import warn_of
 from fatektool.cli.way_back import RegisterWrite, same_again
 from fatektool.errors import DataError, PlcError
 from fatektool.jobs.link_host import LinkHost, read_host
 from fatektool.jobs.link_table import WritePlan, parse_start, plan_write, write_plan
 from fatektool.jobs.link_toml import MAX_TOML, load_table
-from fatektool.program.files import read_bounded, require_folder
+from fatektool.program.files import read_bounded
 from fatektool.protocol.link_tables import kind_of, place_faults
 from fatektool.protocol.link_versions import needs_of_table
 
@@ -42,7 +43,7 @@ if TYPE_CHECKING:
 @click.argument("file", type=PATH)
 @click.argument("sr", metavar="SR")
 @click.option("--dry-run", is_flag=True, help="Show what would be written, and write nothing.")
-@click.option("--force", is_flag=True, help="Write a table that has faults.")
+@click.option("--force", "faulty", is_flag=True, help="Write a table that has faults.")
 @click.option(
     "--safety-dir", type=PATH, metavar="DIR", help="Where the words before are saved; by default beside FILE."
 )
@@ -56,7 +57,7 @@ def write_command(
     voice: Voice,
     *,
     dry_run: bool,
-    force: bool,
+    faulty: bool,
     safety_dir: Path | None,
     no_safety_snapshot: bool,
     yes: bool,
@@ -71,10 +72,10 @@ def write_command(
     apart("no_safety_snapshot", "safety_dir")
     start = parse_start(sr, "SR")
     table = load_table(read_bounded(file, MAX_TOML), str(file))
-    folder = None if no_safety_snapshot else require_folder(safety_dir or file.parent)
+    folder = None if no_safety_snapshot else safety_folder(safety_dir, file, voice, dry_run=dry_run)
     words = table.to_words()
     faults = [*place_faults(start, len(words)), *table.faults()]
-    _require_good(file, table, faults, force=force)
+    _require_good(file, table, faults, force=faulty)
     safety: str | None = None
     failed: list[NotTaken] = []
     with connection.open(voice, writes=not dry_run) as plc:

@@ -271,6 +271,10 @@ def connection_options_but_format(function: F) -> F:
             raise UsageError(
                 "no PLC named", hint="give --port, such as -p /dev/ttyUSB0 or -p sim:, or set FATEKTOOL_PORT"
             )
+        if trace is not None:
+            from fatektool.cli.places import require_free
+
+            require_free(trace)
         from fatektool.connection import usual_format
 
         form = usual_format(protocol) if line_format is None else line_format.upper()

@@ -1,6 +1,6 @@
 """``--report FILE.html``: what a command found, as a page to look at.
 
-A report follows from other data, so one that is there already is replaced. Any other file is kept: a slip of
+A report that is there is kept unless ``--force`` replaces it. Any other file is kept in any case: a slip of
 the hand must not cost a backup. That is looked at before a PLC is asked, and again before FILE is written.
 """
 
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from fatektool.cli.options import PATH
+from fatektool.cli.places import force_option, require_free
 from fatektool.errors import FatektoolError, UsageError
 from fatektool.jobs.times import utc
 from fatektool.program.files import file_error, require_place, write_whole
@@ -31,8 +32,9 @@ F = TypeVar("F", bound="Callable[..., Any]")
 
 
 def report_option(function: F) -> F:
-    """``--report FILE.html``; the command gets ``report``, checked, or None."""
+    """``--report FILE.html`` and ``--force``; the command gets ``report``, checked, or None."""
 
+    @force_option
     @click.option(
         "--report", type=PATH, metavar="FILE.html", help="Also write a page to look at, to mail, to print."
     )
@@ -40,6 +42,7 @@ def report_option(function: F) -> F:
     def with_report(*args: Any, report: Path | None, **rest: Any) -> Any:
         if report is not None:
             _require_report(report)
+            require_free(report)
         return function(*args, report=report, **rest)
 
     return with_report  # type: ignore[return-value]  # click's decorators hand back what they get

@@ -16,6 +16,7 @@ from fatektool.cli.incomplete import restore_lines
 from fatektool.cli.options import PATH, Connection, connection_options, yes_option
 from fatektool.cli.output import Bar, Voice, table
 from fatektool.cli.pairs import apart
+from fatektool.cli.places import safety_folder
 from fatektool.cli.unfinished import RestoreMark, forget
 from fatektool.errors import RestoreIncomplete, UsageError
 from fatektool.jobs.restore import (
@@ -29,7 +30,7 @@ from fatektool.jobs.safety import way_back
 from fatektool.jobs.times import utc
 from fatektool.jobs.unfinished import Unfinished
 from fatektool.program.archive import LARGEST_FILE, Backup
-from fatektool.program.files import read_bounded, require_folder
+from fatektool.program.files import read_bounded
 from fatektool.program.image import ranges
 from fatektool.project.records import is_project
 from fatektool.protocol.commands import Command
@@ -79,7 +80,7 @@ def restore_command(
     """
     apart("no_safety_backup", "rollback", "safety_dir")
     backup = _backup_in(file)
-    folder = None if no_safety_backup else require_folder(safety_dir or file.parent)
+    folder = None if no_safety_backup else safety_folder(safety_dir, file, voice, dry_run=dry_run)
     options = RestoreOptions(stop, run, changed_only, rollback, any_header, single_pass)
     with (
         connection.open(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from functools import wraps
 from math import isnan
@@ -12,6 +13,7 @@ import click
 
 from fatektool.cli.modbus_map import modbus_map_option
 from fatektool.cli.options import PATH, Connection, connection_options_but_format, voice_options
+from fatektool.cli.places import require_folder_for, require_free
 from fatektool.cli.read import SELECTION, shown, warn_of
 from fatektool.cli.report import report_option, write_snapshot_report
 from fatektool.cli.snapshot_apply import apply_command
@@ -22,7 +24,7 @@ from fatektool.jobs.snapshot_compare import Change, compare_snapshots
 from fatektool.jobs.snapshot_formats import FORMATS, SUFFIXES, as_json, as_ndjson, as_prometheus
 from fatektool.jobs.snapshot_spec import MAX_SPEC, Spec, items_of, parse_spec
 from fatektool.jobs.snapshot_store import Keep, append_line, encoded, require_lines, save_dated
-from fatektool.program.files import read_bounded, require_folder, require_place, write_whole
+from fatektool.program.files import read_bounded, write_whole
 from fatektool.protocol.commands import Command
 
 if TYPE_CHECKING:
@@ -141,7 +143,7 @@ def take_command(
         raise UsageError(
             f"--report shows the snapshots in {folder}: expected --format json or ndjson, got {form}"
         )
-    _require_places(output, folder, append, kept)
+    _require_places(output, folder, append, kept, voice)
     with connection.open(voice, needs=(Command.DETAILED_STATUS,) if whole else ()) as plc:
         snapshot = take_all(plc) if whole else take_snapshot(plc, items)
     if form == "prometheus":
@@ -210,8 +212,12 @@ def selected(elements: tuple[str, ...], spec: Path | None, groups: tuple[str, ..
     return Spec(items_of(parse_items(elements)))
 
 
-def _require_places(output: str | None, folder: Path | None, append: Path | None, kept: Keep | None) -> None:
+def _require_places(
+    output: str | None, folder: Path | None, append: Path | None, kept: Keep | None, voice: Voice
+) -> None:
     """Check, before the PLC is asked, that the snapshot can be put where it shall go."""
+    if folder is not None:
+        require_folder_for(folder, voice)
     if append is not None:
         require_lines(append, kept)
     if output is not None and folder is None:
@@ -224,7 +230,8 @@ def _require_output(path: Path) -> None:
     Raises:
         UsageError: it cannot, or a backup lies there.
     """
-    real = require_place(path, overwrite=True)
+    require_free(path)
+    real = Path(os.path.realpath(path))
     try:
         with real.open("rb") as file:
             start = file.read(_LOOKED_AT)
@@ -239,7 +246,7 @@ def _require_output(path: Path) -> None:
 def _folder(output: str | None) -> Path | None:
     if output is None or not (output.endswith(("/", "\\")) or Path(output).is_dir()):
         return None
-    return require_folder(Path(output))
+    return Path(output)
 
 
 @snapshot_command.command(

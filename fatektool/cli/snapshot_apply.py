@@ -13,6 +13,7 @@ from fatektool.cli.modbus_map import modbus_map_option
 from fatektool.cli.options import PATH, Connection, connection_options, yes_option
 from fatektool.cli.output import Voice, table
 from fatektool.cli.pairs import apart
+from fatektool.cli.places import safety_folder
 from fatektool.cli.read import shown, warn_of
 from fatektool.cli.way_back import RegisterWrite, same_again
 from fatektool.errors import PlcError
@@ -20,7 +21,6 @@ from fatektool.jobs.registers import named
 from fatektool.jobs.snapshot import load_snapshot
 from fatektool.jobs.snapshot_apply import ApplyPlan, apply_plan, plan_apply
 from fatektool.planner import plan_writes
-from fatektool.program.files import require_folder
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -64,7 +64,7 @@ def apply_command(
     """
     apart("no_safety_snapshot", "safety_dir")
     snapshot = load_snapshot(file, voice.warn)
-    folder = None if no_safety_snapshot else require_folder(safety_dir or file.parent)
+    folder = None if no_safety_snapshot else safety_folder(safety_dir, file, voice, dry_run=dry_run)
     safety: str | None = None
     failed: list[NotTaken] = []
     with connection.open(voice, writes=not dry_run) as plc:

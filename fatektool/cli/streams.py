@@ -11,26 +11,52 @@ import io
 import os
 import sys
 
-_NOBODY_READS = {errno.EPIPE, errno.EINVAL}  # the second on Windows
 
-
-class Output(io.FileIO):
-    """A descriptor that takes what it is given, also once nobody reads it any more: ``cut`` tells."""
+class Output(io.TextIOWrapper):
+    """Standard output, which takes what it is given, also once nobody reads it any more: ``cut`` tells."""
 
     cut = False
 
-    def write(self, data: object) -> int:
-        """Write what the system takes; all is taken once the reader is gone."""
-        size = memoryview(data).nbytes  # type: ignore[arg-type]  # any buffer
-        if self.cut:
-            return size
+    def write(self, text: str) -> int:
+        """Write text."""
         try:
-            return super().write(data) or 0  # type: ignore[arg-type]
+            return super().write(text)
         except OSError as error:
-            if error.errno not in _NOBODY_READS or (error.errno == errno.EINVAL and os.name != "nt"):
-                raise
-            self.cut = True
-            return size
+            self.lost(error)
+            return len(text)
+
+    def flush(self) -> None:
+        """Hand on what is kept back."""
+        try:
+            super().flush()
+        except OSError as error:
+            self.lost(error)
+
+    def lost(self, error: OSError) -> None:
+        """Let all that is still to come go nowhere, if it is the reader that is gone.
+
+        Raises:
+            OSError: it is another fault.
+        """
+        if not isinstance(error, BrokenPipeError) and (os.name != "nt" or error.errno != errno.EINVAL):
+            raise error
+        self.cut = True
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, self.fileno())
+        os.close(nowhere)
+
+
+def print_bytes(data: bytes) -> None:
+    """Print data as they are on standard output."""
+    out = sys.stdout
+    out.flush()
+    try:
+        out.buffer.write(data)
+        out.buffer.flush()
+    except OSError as error:
+        if not isinstance(out, Output):
+            raise
+        out.lost(error)
 
 
 def mend_streams() -> None:
@@ -41,8 +67,8 @@ def mend_streams() -> None:
             setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: PTH123, SIM115  # stays open
     if isinstance(out, io.TextIOWrapper):
         terminal = out.isatty()
-        sys.stdout = io.TextIOWrapper(
-            io.BufferedWriter(Output(out.fileno(), "wb", closefd=False)),
+        sys.stdout = Output(
+            io.BufferedWriter(io.FileIO(out.fileno(), "wb", closefd=False)),
             out.encoding if terminal else "utf-8",
             "backslashreplace",
             newline=None if terminal else "\n",
@@ -52,5 +78,4 @@ def mend_streams() -> None:
 
 def reader_is_gone() -> bool:
     """True if nobody reads standard output any more, so that who prints without end may end."""
-    raw = getattr(getattr(sys.stdout, "buffer", None), "raw", None)
-    return isinstance(raw, Output) and raw.cut
+    return isinstance(sys.stdout, Output) and sys.stdout.cut

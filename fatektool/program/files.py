@@ -71,6 +71,25 @@ def require_folder(path: Path) -> Path:
     return path
 
 
+def make_folder(path: Path) -> bool:
+    """Have a folder in which files can be made; True if it was missing.
+
+    Raises:
+        UsageError: it cannot be made, is no folder, or is not writable.
+    """
+    try:
+        made = not path.exists()
+        path.mkdir(parents=True, exist_ok=True)
+    except FileExistsError:
+        made = False  # something else, which is said below
+    except (OSError, ValueError) as error:
+        raise file_error("make the folder", path, error) from error
+    if made:
+        sync_folder(path.parent)
+    require_folder(path)
+    return made
+
+
 def write_whole(path: Path, data: bytes, *, overwrite: bool, mode: int = _MODE) -> None:
     """Write a file so that it is whole or absent, on disk when this returns.
 
@@ -140,10 +159,10 @@ def write_new(folder: Path, stem: str, suffix: str, data: bytes) -> Path:
     )
 
 
-def exists_already(path: Path) -> FileExists:
-    """The refusal to replace a file."""
+def exists_already(path: Path, hint: str | None = None) -> FileExists:
+    """The refusal to replace a file; ``hint`` is the next step where there is no ``--force``."""
     return FileExists(
-        f"{path} exists already and is kept", hint="choose another name, or --force", file=str(path)
+        f"{path} exists already and is kept", hint=hint or "choose another name, or --force", file=str(path)
     )
 
 

@@ -293,7 +293,7 @@ def test_an_interrupt_in_the_middle(plant: Plant, place: Path, monkeypatch: pyte
 @pytest.mark.parametrize(
     ("words", "code"),
     [
-        (["none.json"], 2), (["bad.json"], 5), (["a.json", "--safety-dir", "none"], 2), ([], 2),
+        (["none.json"], 2), (["bad.json"], 5), (["a.json", "--safety-dir", "bad.json"], 2), ([], 2),
         (["a.json", "--safety-dir", ".", "--no-safety-snapshot"], 2), (["."], 2),
         (["a.json", "-p", "/dev/none"], 3),
     ],

@@ -126,12 +126,15 @@ def test_an_output_replaces_snapshots_and_no_program(
     before = (place / "press.json").read_bytes()
     with monkeypatch.context() as patch:
         sent = recorded(patch)
-        assert "is the backup of a program" in error_of(plant.cli("snapshot", "R0", "-o", "press.json"), 2)
+        assert "press.json exists already" in error_of(plant.cli("snapshot", "R0", "-o", "press.json"), 2)
         assert sent == []
     assert (place / "press.json").read_bytes() == before
-    for _ in range(2):
-        done = plant.cli("snapshot", "R0", "-o", "data.json")
-        assert (done.code, done.out, done.err) == (0, "", "")
+    done = plant.cli("snapshot", "R0", "-o", "data.json")
+    assert (done.code, done.out, done.err) == (0, "", "")
+    done = plant.cli("snapshot", "R0", "-o", "data.json")
+    assert "data.json exists already and is kept; choose another name, or --force" in error_of(done, 2)
+    assert "is the backup" in error_of(plant.cli("snapshot", "R0", "-o", "press.json", "--force"), 2)
+    assert plant.cli("snapshot", "R0", "-o", "data.json", "--force").code == 0
     assert load_snapshot(place / "data.json").values == {"R0": 0}
     assert plant.cli("snapshot", "R0", "-o", "-", "--format", "csv").out.startswith("time,")
     assert not (place / "-").exists()
@@ -153,7 +156,7 @@ def test_refused_elements_are_saved_too(plant: Plant, place: Path) -> None:
 @pytest.mark.parametrize(
     "words",
     [
-        ["-o", "none/"], ["-o", "none/x.json"], ["-o", "."], ["-o", "/dev/null"], ["--append", "none/x"],
+        ["-o", "notes.txt/"], ["-o", "none/x.json"], ["-o", "."], ["-o", "/dev/null"], ["--append", "none/x"],
         ["--append", "."], ["--append", "/dev/null"], ["--keep", "5"], ["-o", "x.json", "--keep", "5"],
         ["--append", "notes.txt"], ["--append", "whole.json"], ["--append", "backup.json"], ["-o", "x\0y"],
     ],
