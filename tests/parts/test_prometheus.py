@@ -41,7 +41,7 @@ FLEET = {
 @pytest.fixture
 def plant(place: Path) -> Iterator[Hall]:
     """A hall in which each job has something to say of each PLC; one is not there."""
-    (place / "spec.toml").write_text('[[item]]\nname = "speed"\naddress = "R12"\n')
+    (place / "spec.toml").write_text('[[item]]\nname = "speed"\nelement = "R12"\n')
     with hall() as made:
         more = 'reference = "backups/press.json"\nspec = "spec.toml"\n'
         made.write(press=more, oven=more, pump=more, gone='target = "tcp://127.0.0.1:1"\n')
