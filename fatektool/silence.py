@@ -132,7 +132,21 @@ class Silence:
             return "the PLC is slow or the line loses frames: try a longer --timeout, more --retries"
         if heard:
             return "check --baud, --format and --protocol, and the line's termination and shield"
+        if over_network(link):
+            return f"is the PLC on, its station right? {AT_AN_ETHERNET_MODULE}"
         return "is the PLC on and the cable in? Check station, baud and format (factory: station 1, 9600 7E1)"
+
+
+AT_AN_ETHERNET_MODULE: Final = (
+    "A FATEK Ethernet module is silent to an address that it does not permit, and where its PLC takes more "
+    "than 300 ms; it serves 8 connections, and one request at a time"
+)
+"""Its limits, [E:ethernet-limits], as a sentence without its full stop."""
+
+
+def over_network(link: Link) -> bool:
+    """True if there may be an Ethernet module in between."""
+    return link.transport.line is None and link.transport.name.startswith(("tcp://", "udp://"))
 
 
 def _named(request: Request[Any]) -> str:

@@ -111,7 +111,7 @@ def loopback_command(
     with connection.open(voice, needs=(Command.LOOPBACK,) if frame is None else ()) as plc:
         with LiveFigures(voice) as live:
             result = run_loopback(plc, plan, live.update)
-        findings = diagnose(Case(result, plc.link.line, plc.link.station, plc.link.codec))
+        findings = diagnose(Case.of(result, plc.link))
         document = loopback_document(plc, result, findings)
     if result.lost is not None:
         voice.warn(f"the line was lost: {result.lost}")

@@ -267,6 +267,8 @@ def connection_options_but_format(function: F) -> F:
         inventory: Path | None,
         **rest: Any,
     ) -> Any:
+        if not port and rest.get("network"):
+            port = f"udp://{rest['network']}"  # a scan of a network has no other target
         if not port:
             raise UsageError(
                 "no PLC named", hint="give --port, such as -p /dev/ttyUSB0 or -p sim:, or set FATEKTOOL_PORT"

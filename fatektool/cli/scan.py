@@ -9,6 +9,7 @@ import click
 
 from fatektool.cli import INTERRUPTED
 from fatektool.cli.line_documents import scan_document, station_document
+from fatektool.cli.network import look_for_modules, network_option
 from fatektool.cli.options import PROTOCOLS, Connection, Several, connection_options
 from fatektool.cli.pairs import apart, together
 from fatektool.errors import UsageError
@@ -90,6 +91,7 @@ class Bauds(Several):
     metavar="P,…",
     help="Protocols to try.  [default: that of --protocol]",
 )
+@network_option
 @connection_options
 def scan_command(
     connection: Connection,
@@ -99,6 +101,7 @@ def scan_command(
     bauds: tuple[int, ...] | None,
     formats: tuple[str, ...] | None,
     protocols: tuple[str, ...] | None,
+    network: str | None,
 ) -> int:
     """Find which stations answer, and at which speed, format and protocol.
 
@@ -107,6 +110,8 @@ def scan_command(
     A silent station costs the wire time and
     --timeout: a shorter one makes a scan faster, and deaf to slow PLCs. Exit 1 if nobody answers.
     """
+    if network is not None:
+        return look_for_modules(voice, network, connection.timeout_s)
     together("station", holds=False, needs="one PLC; a scan asks those of --stations")
     apart("baud", "bauds")
     apart("line_format", "formats")

@@ -20,6 +20,7 @@ from fatektool.simulator.plc import FLAGS
 from fatektool.simulator.servers import Server
 from fatektool.simulator.slaves import DEFAULT_PROTOCOL, SLAVES
 from fatektool.transport.base import LineSettings
+from fatektool.transport.discovery import MODULE_PORT
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -38,6 +39,12 @@ _DEFAULT_MODELS = ", ".join(f"{spoken.model} with {name}" for name, spoken in SL
 )
 @click.option("--tcp", multiple=True, metavar="HOST:PORT", help="Listen on TCP; port 0 picks a free one.")
 @click.option("--udp", multiple=True, metavar="HOST:PORT", help="Listen on UDP.")
+@click.option(
+    "--discovery",
+    multiple=True,
+    metavar="HOST[:PORT]",
+    help="Answer 'scan --network' as an Ethernet module does; the port is 111 unless named.",
+)
 @click.option("--pty", multiple=True, metavar="LINK", help="Be a serial port: a pty, LINK leads to it.")
 @click.option("--protocol", type=click.Choice(list(SLAVES)), default=DEFAULT_PROTOCOL, show_default=True)
 @click.option("--station", multiple=True, type=click.IntRange(1, 254), help="A station; may be repeated.")
@@ -104,6 +111,7 @@ def simulate_command(
     *,
     tcp: tuple[str, ...],
     udp: tuple[str, ...],
+    discovery: tuple[str, ...],
     pty: tuple[str, ...],
     protocol: str,
     station: tuple[int, ...],
@@ -135,9 +143,10 @@ def simulate_command(
     do not fit; twins, two PLCs at one station; bit-errors, each byte for itself, so that long answers suffer
     more. The same seed gives the same faults; docs/simulator.md tells of each.
     """
-    if not (tcp or udp or pty):
+    if not (tcp or udp or pty or discovery):
         raise UsageError("no door named", hint="give --tcp HOST:PORT, --udp HOST:PORT or --pty LINK")
     doors = [("tcp", door) for door in tcp] + [("udp", door) for door in udp]
+    doors += [("discovery", door if ":" in door else f"{door}:{MODULE_PORT}") for door in discovery]
     if replay is not None:
         from fatektool.cli.replay import open_replay, tell_unknown
 
@@ -215,10 +224,8 @@ def _serve(
     server = Server(lines)
     signal.signal(signal.SIGTERM, lambda *_: server.stop())
     try:
-        opened = [
-            (server.open_tcp if kind == "tcp" else server.open_udp)(*_host_and_port(text))
-            for kind, text in doors
-        ]
+        make = {"tcp": server.open_tcp, "udp": server.open_udp, "discovery": server.open_discovery}
+        opened = [make[kind](*_host_and_port(text)) for kind, text in doors]
         opened += [server.open_pty(link, pty_baud) for link in links]
         if voice.json:
             addresses = [door.address for door in opened]

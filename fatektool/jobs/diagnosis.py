@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 from fatektool.jobs.evidence import answers_heard, damaged, framed_with_parity, grows, sample
 from fatektool.jobs.finding import Case, Finding
 from fatektool.jobs.raw_rules import raw_altered, raw_echo, raw_nothing_right, raw_silence, raw_twice
-from fatektool.silence import longer_timeout
+from fatektool.silence import AT_AN_ETHERNET_MODULE, longer_timeout
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -43,7 +43,9 @@ def _silence(case: Case) -> Finding | None:
         fault=True,
         finding="nothing comes back, not a byte",
         evidence=f"{result.total.sent} requests, 0 bytes heard",
-        advice="is the PLC on, the cable in, A and B the right way round, the port the right one? If so, "
+        advice=f"is the PLC on, the address right, the station right? {AT_AN_ETHERNET_MODULE}"
+        if case.network
+        else "is the PLC on, the cable in, A and B the right way round, the port the right one? If so, "
         "another station, speed or format: 'fatektool scan' finds it",
     )
 

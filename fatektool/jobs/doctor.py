@@ -88,7 +88,7 @@ def examine(plc: Plc, on_step: Callable[[str, int, int], object] = lambda *_: No
         raise KeyboardInterrupt
     if result.lost is not None:
         raise TransportClosed(result.lost)
-    said = diagnose(Case(result, link.line, link.station, link.codec))
+    said = diagnose(Case.of(result, link))
     if enough is not None:  # which knows more of it
         said = late + [each for each in said if each.rule != SLOW_PLC]
     found = Examination(result, findings=said, enough=enough)

@@ -5,8 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from fatektool.silence import over_network
+
 if TYPE_CHECKING:
     from fatektool.jobs.loopback_result import LoopbackResult
+    from fatektool.link import Link
     from fatektool.protocol.codec import Codec
     from fatektool.transport.base import LineSettings
 
@@ -38,6 +41,12 @@ class Case:
     line: LineSettings
     station: int
     codec: Codec
+    network: bool = False
+
+    @classmethod
+    def of(cls, result: LoopbackResult, link: Link) -> Case:
+        """The case of a test over this link."""
+        return cls(result, link.line, link.station, link.codec, over_network(link))
 
     @property
     def silent(self) -> bool:

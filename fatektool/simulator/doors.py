@@ -75,9 +75,9 @@ class TcpDoor:
 
     def __init__(self, server: Server, host: str, port: int) -> None:
         self._server = server
-        self._socket = _bound(socket.SOCK_STREAM, "tcp", host, port)
+        self._socket = bound(socket.SOCK_STREAM, "tcp", host, port)
         self._socket.listen(128)
-        self.address = _address("tcp", self._socket)
+        self.address = address_of("tcp", self._socket)
         self.connections: set[TcpConnection] = set()
         server.selector.register(self._socket, selectors.EVENT_READ, self._on_ready)
 
@@ -203,8 +203,8 @@ class UdpDoor:
 
     def __init__(self, server: Server, host: str, port: int) -> None:
         self._server = server
-        self._socket = _bound(socket.SOCK_DGRAM, "udp", host, port)
-        self.address = _address("udp", self._socket)
+        self._socket = bound(socket.SOCK_DGRAM, "udp", host, port)
+        self.address = address_of("udp", self._socket)
         # A line keeps the pace and the late answers of one sender; the oldest senders are forgotten.
         self._lines: OrderedDict[object, Line] = OrderedDict()
         server.selector.register(self._socket, selectors.EVENT_READ, self._on_ready)
@@ -239,25 +239,26 @@ class UdpDoor:
             self._socket.close()
 
 
-def _bound(kind: socket.SocketKind, scheme: str, host: str, port: int) -> socket.socket:
+def bound(kind: socket.SocketKind, scheme: str, host: str, port: int) -> socket.socket:
+    """A socket at this address; LineError if it cannot be had."""
     shown = f"{scheme}://{f'[{host}]' if ':' in host else host}:{port}"
     if not 0 <= port <= _MAX_PORT:  # getaddrinfo would take it modulo 65536
         raise LineError(f"cannot listen on {shown}: a port is 0 to {_MAX_PORT}", address=shown)
     try:
         family, _, _, _, address = socket.getaddrinfo(host, port, type=kind, flags=socket.AI_PASSIVE)[0]
-        bound = socket.socket(family, kind)
+        opened = socket.socket(family, kind)
     except (OSError, UnicodeError, OverflowError) as error:
         raise _cannot_listen(shown, error) from error
     try:
         # On Windows the option would let two servers share a port.
         if kind == socket.SOCK_STREAM and os.name == "posix":
-            bound.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        bound.bind(address)
-        bound.settimeout(0)
+            opened.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        opened.bind(address)
+        opened.settimeout(0)
     except (OSError, OverflowError) as error:
-        bound.close()
+        opened.close()
         raise _cannot_listen(shown, error) from error
-    return bound
+    return opened
 
 
 def _cannot_listen(shown: str, error: Exception) -> LineError:
@@ -269,6 +270,7 @@ def _cannot_listen(shown: str, error: Exception) -> LineError:
     )
 
 
-def _address(scheme: str, bound: socket.socket) -> str:
-    host, port = bound.getsockname()[:2]
+def address_of(scheme: str, opened: socket.socket) -> str:
+    """Where a socket listens, in words."""
+    host, port = opened.getsockname()[:2]
     return f"{scheme}://[{host}]:{port}" if ":" in host else f"{scheme}://{host}:{port}"

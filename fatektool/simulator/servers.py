@@ -26,6 +26,7 @@ import threading
 import time
 from typing import TYPE_CHECKING
 
+from fatektool.simulator.discovery import ANSWER_PORT, DiscoveryDoor
 from fatektool.simulator.doors import TcpDoor, UdpDoor
 from fatektool.simulator.pty_door import PtyDoor
 
@@ -68,6 +69,10 @@ class Server:
     def open_udp(self, host: str = "127.0.0.1", port: int = 0) -> Door:
         """Listen on UDP; port 0 takes a free one. LineError if it cannot be had."""
         return self._opened(UdpDoor(self, host, port))
+
+    def open_discovery(self, host: str = "127.0.0.1", port: int = 0, answer_port: int = ANSWER_PORT) -> Door:
+        """Answer who looks for Ethernet modules by UDP. LineError if the address cannot be had."""
+        return self._opened(DiscoveryDoor(self, host, port, answer_port))
 
     def open_pty(self, link: str | os.PathLike[str], baud: int | None = None) -> Door:
         """Make a pseudo terminal with ``link`` pointing to it. LineError if it cannot be had.

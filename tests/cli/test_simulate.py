@@ -96,7 +96,10 @@ def test_faults_strike(cli: Cli) -> None:
         (door,) = listening(running)
         done = cli("status", "-p", door, "--retries", 1, "--timeout", 0.1)
         assert done.code == 3
-        assert "s in all: nothing heard; is the PLC on and the cable in?" in one_line(done.err)
+        assert (
+            "s in all: nothing heard; is the PLC on, its station right? A FATEK Ethernet module"
+            in one_line(done.err)
+        )
 
 
 def test_another_protocol_through_a_usb_adapter() -> None:

@@ -139,7 +139,7 @@ CASES = [
         {
             "error": "0x04",
             "answer_to": "23",
-            EXPERT: "Refused: illegal format or command, or it cannot be executed now",
+            EXPERT: "Refused: illegal format, or a command that cannot be executed",
         },
     ),
     case(
