@@ -15,18 +15,22 @@ this computer's, so that simulated PLCs are reached.
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import grp
 import os
+import secrets
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
 ROOT: Final = Path(__file__).parent.parent.parent
 LINKS: Final = ("bin", "sbin", "lib", "lib32", "lib64", "libx32")
@@ -104,15 +108,55 @@ def run_in_container(
         Path(device).chmod(0o660)
         words.append(f"--bind={device}:/dev/ttyUSB0")
     words += ["--boot", "systemd.unit=script.service", "systemd.show_status=no"]
-    # nspawn keeps things in /run, which it wants to be no disk: it gets one of its own.
-    inside = f"mount --make-rprivate / && mount -t tmpfs tmpfs /run && exec {shlex.join(words)}"
-    done = subprocess.run(
-        ["unshare", "--mount", "sh", "-c", inside],
-        stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False,
-    )  # fmt: skip
+    with _own_control_groups() as groups:
+        enter = [f"echo $$ > {shlex.quote(str(group / 'cgroup.procs'))}" for group in groups]
+        # nspawn keeps things in /run, which it wants to be no disk: it gets one of its own.
+        steps = [*enter, "mount --make-rprivate /", "mount -t tmpfs tmpfs /run", f"exec {shlex.join(words)}"]
+        done = subprocess.run(
+            ["unshare", "--mount", "sh", "-c", " && ".join(steps)],
+            stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False,
+        )  # fmt: skip
     streams = [out / "stdout", out / "stderr"]
     texts_left = [path.read_text(encoding="utf-8") if path.exists() else "" for path in streams]
     return Ended(done.returncode, texts_left[0], texts_left[1] + done.stderr, out)
+
+
+@contextlib.contextmanager
+def _own_control_groups() -> Iterator[list[Path]]:
+    """Control groups for one container, as two systemds in one would end each other's services.
+
+    Whatever is still in them at the end, after a time-out, is killed.
+    """
+    made: list[Path] = []
+    own = f"fatektool-test-{secrets.token_hex(6)}"  # the same in each, as nspawn takes it to be
+    hierarchies = {"name=systemd": ("systemd",), "": ("unified", ".")}
+    try:
+        for line in Path("/proc/self/cgroup").read_text(encoding="utf-8").splitlines():
+            _, controllers, path = line.split(":", 2)
+            for name in hierarchies.get(controllers, ()):
+                parent = Path("/sys/fs/cgroup", name, path.lstrip("/"))
+                if (parent / "cgroup.procs").exists():
+                    made.append(parent / own)
+                    made[-1].mkdir()
+                    break
+        yield made
+    finally:
+        for group in made:
+            _empty(group)
+
+
+def _empty(group: Path) -> None:
+    groups = [*sorted((path for path in group.rglob("*") if path.is_dir()), reverse=True), group]
+    for path in groups:
+        for process in (path / "cgroup.procs").read_text(encoding="utf-8").split():
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(int(process), signal.SIGKILL)
+    deadline = time.monotonic() + 5
+    while group.exists() and time.monotonic() < deadline:  # as long as processes are just ending
+        for path in groups:
+            with contextlib.suppress(OSError):
+                path.rmdir()
+        time.sleep(0.01)
 
 
 @functools.cache
