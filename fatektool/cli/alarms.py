@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 from dataclasses import dataclass, field
 from functools import wraps
@@ -12,7 +13,7 @@ import click
 from fatektool.cli.options import PATH
 from fatektool.errors import FatektoolError, UsageError
 from fatektool.jobs.alarms import TIME_LIMIT_S, Event, parse_command, run_command
-from fatektool.jobs.prometheus import Sample, exposition, sample, successes
+from fatektool.jobs.prometheus import Sample, doubled, exposition, sample, successes
 from fatektool.jobs.times import utc
 from fatektool.program.files import read_bounded, require_place, write_whole
 
@@ -82,27 +83,33 @@ class Alarms:
         if self.on_failure is not None and told.exit_code:
             self._run(self.on_failure, "failure", job, told, voice)
 
-    def write(self, known: set[str]) -> None:
+    def write(self, known: set[str], voice: Voice) -> None:
         """Write the Prometheus file, whole or not at all; ``lost`` is why, if it cannot be.
 
         That is no error here: what became of the PLCs is still to be told.
 
         Args:
             known: the PLCs whose successes of former runs are kept.
+            voice: is told of other files that the collector would not take beside this one.
         """
         if self.prometheus is not None:
             try:
-                self._write(self.prometheus, known)
+                self._write(self.prometheus, known, voice)
             except FatektoolError as error:
                 self.lost = error
 
-    def _write(self, prometheus: Path, known: set[str]) -> None:
+    def _write(self, prometheus: Path, known: set[str], voice: Voice) -> None:
         former: dict[tuple[str, str], float] = {}
         if prometheus.is_file():
             text = read_bounded(prometheus, _MAX_FILE).decode(errors="replace")
             former = {key: when for key, when in successes(text).items() if key[0] in known}
-        data = exposition(_samples(self._told, former, time.time())).encode(errors="backslashreplace")
-        write_whole(prometheus, data, overwrite=True, mode=_MODE)
+        text = exposition(_samples(self._told, former, time.time()))
+        write_whole(prometheus, text.encode(errors="backslashreplace"), overwrite=True, mode=_MODE)
+        for name, series in doubled(text, _beside(prometheus)).items():
+            voice.warn(
+                f"{prometheus.name} and {name} both have {series}: the node exporter takes neither; "
+                f"remove {name} if nothing writes it any more, or let one command write both"
+            )
 
     def _run(self, command: tuple[str, ...], event: str, job: str, told: Told, voice: Voice) -> None:
         if self._hangs >= _MOST_HANGS:
@@ -117,6 +124,17 @@ class Alarms:
         if fault is not None:
             voice.warn(f"--on-{event} for {told.name}: {fault}")
         self._hangs += time.monotonic() - began >= TIME_LIMIT_S
+
+
+def _beside(prometheus: Path) -> dict[str, str]:
+    """The other files of the collector's folder, as far as they can be read."""
+    found = {}
+    with contextlib.suppress(OSError):
+        for path in sorted(prometheus.absolute().parent.glob("*.prom")):
+            with contextlib.suppress(FatektoolError):
+                if path.name != prometheus.name:
+                    found[path.name] = read_bounded(path, _MAX_FILE).decode(errors="replace")
+    return found
 
 
 def _samples(

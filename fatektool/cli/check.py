@@ -118,7 +118,7 @@ def check_command(
         done,
     )
     alarms.tell("check", told, voice)
-    alarms.write({name})
+    alarms.write({name}, voice)
     if alarms.lost is not None:
         found.add(State.UNKNOWN, f"figures NOT WRITTEN: {alarms.lost.message}")
         done = _done(connection, name, plan, found)

@@ -184,7 +184,7 @@ def run_fleet(
                     report(turn)
     rest = [_not_done(entry) for entry in orders.entries if entry.name not in outcomes]
     outcomes |= {outcome.entry.name: outcome for outcome in rest}
-    alarms.write(set(orders.inventory.plcs))
+    alarms.write(set(orders.inventory.plcs), voice)
     ordered = [outcomes[entry.name] for entry in orders.entries]
     document = fleet_document(job, orders, ordered, interrupted=interrupted)
     return document | {"time": time_, "duration_s": round(time.monotonic() - began, 3)}, interrupted

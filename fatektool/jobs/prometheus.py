@@ -100,5 +100,24 @@ def _number(value: float) -> str:
     return str(int(value)) if value == int(value) and abs(value) < _PLAIN_BELOW else repr(value)
 
 
+def doubled(text: str, others: Mapping[str, str]) -> dict[str, str]:
+    """Which files have a series that this one has too; the collector would refuse both.
+
+    Args:
+        text: of this file.
+        others: the other files of its folder, by name.
+
+    Returns:
+        A series of each such file.
+    """
+    own = _series(text)
+    shared = {name: own & _series(other) for name, other in others.items()}
+    return {name: min(found) for name, found in shared.items() if found}
+
+
+def _series(text: str) -> set[str]:
+    return {line.rpartition(" ")[0] for line in text.splitlines() if line.startswith("fatek_")}
+
+
 def _escaped(text: str) -> str:
     return re.sub(r'[\\"\n]', lambda found: _ESCAPES[found[0]], text)

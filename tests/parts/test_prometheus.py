@@ -241,6 +241,19 @@ def test_the_node_exporter_would_refuse_one_series_in_two_files(cli: Cli, place:
     assert "500" in text or "node_textfile_scrape_error 1" in text
 
 
+def test_a_series_that_another_file_has_is_warned_of(cli: Cli, place: Path, plant: Hall) -> None:
+    assert plant.targets
+    assert "neither" not in cli("fleet", "status", "--prometheus", "prom/a.prom").err
+    assert "neither" not in cli("fleet", "backup", "--dir", "backups", "--prometheus", "prom/b.prom").err
+    assert "neither" not in cli("fleet", "status", "--prometheus", "prom/a.prom").err  # its own is replaced
+    done = cli("fleet", "status", "--select", "oven", "--prometheus", "prom/c.prom", "-q")
+    assert done.code == 0
+    assert 'c.prom and a.prom both have fatek_battery_low{job="status",plc="oven"}' in done.err
+    assert "remove a.prom" in done.err
+    (place / "prom/a.prom").unlink()
+    assert "neither" not in cli("fleet", "status", "--select", "oven", "--prometheus", "prom/c.prom").err
+
+
 # --- Prometheus ---------------------------------------------------------------------------------------
 
 
