@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from fatektool.transport.base import Transport
 
 _READ_BYTES: Final = 4096
-_MOST_OWED: Final = 16
+_MOST_OWED: Final = 64
+"""Of the oldest, which come first, none may be pushed out by the fences that are asked meanwhile."""
 
 
 class Awaited(NamedTuple):

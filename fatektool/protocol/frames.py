@@ -190,6 +190,10 @@ def error_text(code: int, protocol: str = "facon") -> str:
         from fatektool.protocol import mseries_errors
 
         return mseries_errors.MEANINGS.get(code, mseries_errors.UNKNOWN)
+    if protocol == "mseries":
+        from fatektool.protocol import mseries_errors
+
+        return mseries_errors.MEANINGS.get(code, mseries_errors.UNKNOWN)
     from fatektool.protocol.plc_errors import MEANINGS
 
     return MEANINGS.get(code, "a code that no paper lists")

@@ -63,6 +63,8 @@ def test_error_texts() -> None:
     assert fatektool.error_text(2, "modbus-rtu") == "illegal data address, not in the PLC's Modbus map"
     assert fatektool.error_text(0xB, "modbus-tcp") == "the gateway says: it asked the PLC, and got no answer"
     assert fatektool.error_text(0xE) == "a code that no paper lists"
+    assert fatektool.error_text(9, "mseries") == "cannot run, function not supported"
+    assert fatektool.error_text(3, "mseries") == "a code that the M-series paper does not list"
     assert fatektool.error_text(0x7F, "modbus-tcp") == "a code that Modbus does not list"
 
 
