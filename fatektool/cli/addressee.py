@@ -24,7 +24,7 @@ from fatektool.errors import LineError, PlcError, UsageError
 from fatektool.protocol.commands import Command
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator
 
     from fatektool.cli.output import Voice
     from fatektool.client import Plc
@@ -167,14 +167,6 @@ def with_status(plc: Plc, brief: BriefStatus) -> Addressee:
     if model is None and not brief.m_series:
         model = f"code {brief.status2:02X}"
     return Addressee(plc.target, plc.link.station, model, brief.flags.running)
-
-
-def model_words(system: Mapping[str, Any]) -> str:
-    """What 53 says of a model, from a document's ``system``: ``MC, 28 points, OS 3.1``."""
-    unit, points = system["unit_type"], system["main_unit_points"]
-    name = unit["name"] or f"type {unit['code']:02X}"
-    count = f"{points['points']} points" if points["points"] else f"points code {points['code']:02X}"
-    return f"{name}, {count}, OS {system['os_version']}"
 
 
 def agree(

@@ -56,7 +56,16 @@ def status_document(report: StatusReport) -> dict[str, Any]:
         "protocol": report.protocol,
         "status": report.flags.document(),
         "system": _system(report),
-        "brief": {"status2": report.brief.status2, "model": report.brief.model},
+        "brief": {
+            "status1": report.brief.status1,
+            "status2": report.brief.status2,
+            "status3": report.brief.status3,
+            "model": report.brief.model,
+        },
+        "raw": {
+            "brief": report.brief.to_bytes().hex().upper(),
+            "detailed": None if report.detailed is None else report.detailed.raw.hex().upper(),
+        },
         "unfinished_restore": unfinished_document(report.target, report.station),
     }
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 from click.core import ParameterSource
 
-from fatektool.cli.addressee import Addressee, Origin, Pace, agree, model_words, spent
+from fatektool.cli.addressee import Addressee, Origin, Pace, agree, spent
 from fatektool.cli.documents import restore_document
 from fatektool.cli.image_words import warn_of_image
 from fatektool.cli.incomplete import restore_lines
@@ -32,6 +32,7 @@ from fatektool.jobs.unfinished import Unfinished
 from fatektool.program.archive import LARGEST_FILE, Backup
 from fatektool.program.files import read_bounded
 from fatektool.program.image import ranges
+from fatektool.program.plc_record import model_words
 from fatektool.project.records import is_project
 from fatektool.protocol.commands import Command
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from fatektool.errors import DataError
 from fatektool.program.headers.header import FBS, SWAPPED
+from fatektool.program.plc_record import model_words
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from fatektool.program.headers.header import Header
     from fatektool.program.image import Program
 
@@ -60,6 +63,22 @@ def require_kin(wanted: Program, present: Program, *, any_header: bool) -> None:
         hint=_HINT if file.family != plc.family else f"{_HINT}; or --any-header, if it is meant",
         plc_signature=plc.signature,
         file_signature=file.signature,
+    )
+
+
+def model_warning(file: Mapping[str, Any], plc: Mapping[str, Any]) -> str | None:
+    """What to say if a program was read from another unit type, number of points or OS than it goes to.
+
+    Args:
+        file: the record of the PLC that it was read from, ``system``.
+        plc: the same of this one.
+    """
+    keys = ("unit_type", "main_unit_points", "os_version")
+    if all(file[key] == plc[key] for key in keys):
+        return None
+    return (
+        f"the program was read from another model, {model_words(file)}, and goes into {model_words(plc)}: "
+        f"inputs, outputs and instructions may differ"
     )
 
 

@@ -29,7 +29,7 @@ from fatektool.errors import (
     UsageError,
 )
 from fatektool.jobs.backup import backup_of
-from fatektool.jobs.fit import require_kin, require_size
+from fatektool.jobs.fit import model_warning, require_kin, require_size
 from fatektool.jobs.progress import Progress, no_progress
 from fatektool.jobs.reading import Reading, read_program, read_program_twice
 from fatektool.jobs.rewrite import Rewrite
@@ -157,6 +157,9 @@ def plan_restore(
     warnings = []
     if status.flags.id_set:
         warnings.append("the PLC has an ID set: a program with another ID loads, but will not RUN (error 6)")
+    other_model = model_warning(backup.plc["system"], reading.status.system.document())
+    if other_model is not None:
+        warnings.append(other_model)
     if comparison.b_has_more:
         left = ranges(range(count, len(present.pages)))
         warnings.append(f"the PLC has more pages than the file, {left}: they stay as they are")

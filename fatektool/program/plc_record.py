@@ -12,7 +12,7 @@ import re
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
 _VERSION: Final = re.compile(r"[0-9A-F]\.[0-9A-F]", re.ASCII)
 
@@ -63,6 +63,14 @@ SHAPE: Final[dict[str, Any]] = {
         "counters": _COUNT,
     },
 }
+
+
+def model_words(system: Mapping[str, Any]) -> str:
+    """What ``system`` says of the model: ``MC, 28 points, OS 3.1``."""
+    unit, points = system["unit_type"], system["main_unit_points"]
+    name = unit["name"] or f"type {unit['code']:02X}"
+    count = f"{points['points']} points" if points["points"] else f"points code {points['code']:02X}"
+    return f"{name}, {count}, OS {system['os_version']}"
 
 
 def fault_of(value: object, shape: Any = SHAPE, where: str = "plc") -> tuple[str, object] | None:

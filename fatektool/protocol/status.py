@@ -76,12 +76,19 @@ class BriefStatus:
         status2: byte 2, a model's code.
         status3: byte 3, reserved.
         m_series: True if bit 3 of byte 1 is a memory card, and byte 2 is reserved too.
+        bit7: bit 7 of byte 1, reserved.
     """
 
     flags: StatusFlags
     status2: int
     status3: int
     m_series: bool = False
+    bit7: bool = False
+
+    @property
+    def status1(self) -> int:
+        """Byte 1 as it came."""
+        return self.flags.byte | self.bit7 << 7
 
     @property
     def model(self) -> str | None:
@@ -97,11 +104,11 @@ class BriefStatus:
         """
         if len(data) != BRIEF_BYTES:
             raise FrameError(f"brief status: expected {BRIEF_BYTES} bytes, got {len(data)}", raw=data)
-        return cls(StatusFlags.parse(data[0]), data[1], data[2], m_series)
+        return cls(StatusFlags.parse(data[0]), data[1], data[2], m_series, bit7=data[0] > 0x7F)
 
     def to_bytes(self) -> bytes:
         """The three bytes again."""
-        return bytes([self.flags.byte, self.status2, self.status3])
+        return bytes([self.status1, self.status2, self.status3])
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,9 +14,9 @@ from fatektool.jobs.verify import verify
 from fatektool.program.archive import Backup
 from fatektool.program.image import Program
 from fatektool.simulator.refusal import Refusal
-from tests.plcs import simulated
+from tests.plcs import Simulated, simulated
 from tests.program.samples import backup as backup_of
-from tests.program.samples import program
+from tests.program.samples import header, program
 
 from .bench import READ_PAGE, Bench
 
@@ -105,8 +105,10 @@ def test_the_rest_of_a_gap_is_asked_with_one_request() -> None:
 # --- verify and restore ---------------------------------------------------------------------------------
 
 
-def plan(one: object, wanted: Program, **options: bool) -> RestorePlan:
-    return plan_restore(one.plc, backup_of(wanted), RestoreOptions(**options))  # type: ignore[attr-defined]
+def plan(one: Bench | Simulated, wanted: Program, **options: bool) -> RestorePlan:
+    file = backup_of(wanted)
+    file.plc["system"] |= one.plc.detailed_status().system.document()
+    return plan_restore(one.plc, file, RestoreOptions(**options))
 
 
 def test_verify_reads_as_many_pages_as_the_file_has_and_says_that_there_are_more() -> None:
@@ -165,3 +167,39 @@ def test_another_family_is_refused_whatever_is_asked_for() -> None:
         for any_header in (False, True):
             with pytest.raises(DataError, match=r"of another family of PLC: expected .* as in the PLC"):
                 plan(one, wanted, any_header=any_header)
+
+
+# --- another model --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "said"),
+    [
+        ("unit_type", {"code": 0, "name": "MA/MU"}, "MA/MU, 28 points, OS 3.1"),
+        ("unit_type", {"code": 7, "name": None}, "type 07, 28 points, OS 3.1"),
+        ("main_unit_points", {"code": 3, "points": 40}, "MC, 40 points, OS 3.1"),
+        ("main_unit_points", {"code": 9, "points": None}, "MC, points code 09, OS 3.1"),
+        ("os_version", "3.0", "MC, 28 points, OS 3.0"),
+    ],
+)
+def test_a_program_of_another_model_is_a_warning(key: str, value: object, said: str) -> None:
+    bench = Bench(program(400, seed=1))
+    file = backup_of(program(400, seed=2))
+    file.plc["system"][key] = value
+    (warning,) = plan_restore(bench.plc, file, RestoreOptions()).warnings
+    assert warning.startswith(
+        f"the program was read from another model, {said}, and goes into MC, 28 points, OS 3.1: "
+    )
+
+
+def test_the_same_model_is_none() -> None:
+    assert plan(Bench(program(400, seed=1)), program(400, seed=2)).warnings == ()
+
+
+def test_other_letters_of_the_signature_are_refused_unless_that_is_asked_for() -> None:
+    bench = Bench(program(400, seed=1))
+    wanted = program(400, seed=2, page0=header(400, b"FM30"))
+    with pytest.raises(DataError, match=r"expected FB as in the PLC, got FM in the file; .* or --any-header"):
+        plan(bench, wanted)
+    assert plan(bench, wanted, any_header=True).pages == tuple(range(8))
+    assert plan(Bench(program(400, page0=header(400, b"FB99"))), program(400)).pages == tuple(range(8))

@@ -59,7 +59,7 @@ def plc_record(words: int) -> dict[str, Any]:
         "status": dict.fromkeys(FLAGS, False),
         "system": {
             "unit_type": {"code": 1, "name": "MC"},
-            "main_unit_points": {"code": 9, "points": None},
+            "main_unit_points": {"code": 2, "points": 28},
             "os_version": "3.1",
             **dict.fromkeys(COUNTS, 256),
             "ladder_words": words,

@@ -117,7 +117,7 @@ def test_a_mode_that_is_acknowledged_and_does_not_come(cli: Cli, door: Door, com
 def test_a_stop_that_is_acknowledged_and_not_made_lets_nothing_be_written(
     place: Path, cli: Cli, door: Door
 ) -> None:
-    save_backup(backup(NEW), place / "new.json")
+    save_backup(backup(NEW, target=door.target), place / "new.json")
     device = door.simulation.plcs[1]
     device.running = True
     device.stop = lambda: None  # type: ignore[method-assign]  # as the PLC's own switch has it
@@ -129,7 +129,7 @@ def test_a_stop_that_is_acknowledged_and_not_made_lets_nothing_be_written(
 
 def test_a_run_that_does_not_come_behind_a_restore(place: Path, cli: Cli, door: Door) -> None:
     """The program is in the PLC and proven: that is said, and that the machine stands."""
-    save_backup(backup(NEW), place / "new.json")
+    save_backup(backup(NEW, target=door.target), place / "new.json")
     door.simulation.plcs[1].run = lambda: None  # type: ignore[method-assign]  # as an emergency stop has it
     done = cli("restore", "new.json", "--run", "--yes", "-q", "-p", door.target)
     assert done.code == 4
@@ -166,7 +166,7 @@ def test_a_page_that_never_reads_the_same(place: Path, cli: Cli, door: Door) -> 
     device.read_page = lambda page: (  # type: ignore[method-assign]
         OLD.pages[page] if page != 3 else next(calls).to_bytes(128, "big")
     )
-    save_backup(backup(NEW), place / "new.json")
+    save_backup(backup(NEW, target=door.target), place / "new.json")
     assert cli("backup", "x.json", "-p", door.target).code == 5
     done = cli("restore", "new.json", "--yes", "-p", door.target)
     assert done.code == 5
@@ -217,7 +217,7 @@ def test_a_plc_that_is_exchanged_between_two_written_pages(
 
 
 def test_the_warning_is_told(place: Path, cli: Cli, door: Door) -> None:
-    save_backup(backup(NEW), place / "new.json")
+    save_backup(backup(NEW, target=door.target), place / "new.json")
     device = door.simulation.plcs[1]
     at_call(device, WRITE, 4, another(OTHER, device))
     done = cli("restore", "new.json", "--yes", "--json", "-p", door.target)

@@ -15,7 +15,7 @@
          256      code: main units, one word FFFF, sub units, FFFF
 
 Sums are modulo 65536. No paper describes this: it was read from images in project files, of 15 models (see
-docs/programs.md). How such an image comes over the line is not known, so either byte order is taken.
+docs/program-images.md). How such an image comes over the line is not known, so either byte order is taken.
 """
 
 from __future__ import annotations
