@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 from fatektool.program.headers.header import PAGE_WORDS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping
 
     from fatektool.ladder.differences import NetworkChange
     from fatektool.program.compare import Comparison
@@ -44,7 +44,9 @@ def difference_lines(found: Comparison, same: str, a: str, b: str) -> Iterator[s
         yield f"  page {page.page}, {len(page.words)} of {PAGE_WORDS} words: {shown}{rest}"
 
 
-def program_lines(found: ProgramComparison, same: str, a: str, b: str) -> Iterator[str]:
+def program_lines(
+    found: ProgramComparison, same: str, a: str, b: str, comments: Mapping[str, str] | None = None
+) -> Iterator[str]:
     """What differs between two programs: a line a page, then the networks as a unified diff of instructions.
 
     Args:
@@ -52,6 +54,7 @@ def program_lines(found: ProgramComparison, same: str, a: str, b: str) -> Iterat
         same: the line for two programs that are the same.
         a: what the first is called.
         b: what the second is called.
+        comments: of elements, to stand beside the instructions.
     """
     yield from difference_lines(found.pages, same, a, b)
     if found.networks is None:
@@ -66,33 +69,45 @@ def program_lines(found: ProgramComparison, same: str, a: str, b: str) -> Iterat
     yield f"networks: {found.networks_summary}"
     yield f"--- {a}"
     yield f"+++ {b}"
-    yield from change_lines(found.networks)
+    yield from change_lines(found.networks, comments)
 
 
-def change_lines(changes: Iterable[NetworkChange]) -> Iterator[str]:
+def change_lines(
+    changes: Iterable[NetworkChange], comments: Mapping[str, str] | None = None
+) -> Iterator[str]:
     """Networks that differ, a hunk each."""
     for change in changes:
-        yield from _network_lines(change)
+        yield from _network_lines(change, comments or {})
 
 
-def _network_lines(change: NetworkChange) -> Iterator[str]:
+def _network_lines(change: NetworkChange, comments: Mapping[str, str]) -> Iterator[str]:
     """A network as a hunk: all of it, or of a long one what is near a difference."""
     here, there = (network.name if network is not None else "" for network in (change.a, change.b))
     moved = f"{here} -> {there}" if here and there and here != there else here or there
     yield f"@@ {moved} {change.change} @@"
     near = {
         near
-        for number, line in enumerate(change.lines)
-        if line[0] != " "
+        for number, line in enumerate(change.diff)
+        if line.sign != " "
         for near in range(number - _CONTEXT, number + _CONTEXT + 1)
     }
     left_out = False
-    for number, line in enumerate(change.lines):
-        if len(change.lines) <= _WHOLE or number in near:
-            yield line
+    for number, line in enumerate(change.diff):
+        is_shown = len(change.diff) <= _WHOLE or number in near
+        if is_shown:
+            remark = beside(line.elements, comments)
+            yield f"{line!s:<30}  {remark}" if remark else str(line)
         elif not left_out:
             yield " ..."
-        left_out = not (len(change.lines) <= _WHOLE or number in near)
+        left_out = not is_shown
+
+
+def beside(elements: tuple[str, ...], comments: Mapping[str, str]) -> str:
+    """The comments of an instruction's elements, as they are shown beside it."""
+    known = [(element, comments[element]) for element in elements if element in comments]
+    if len(elements) == 1:
+        return known[0][1] if known else ""
+    return ", ".join(f"{element}: {comment}" for element, comment in known)
 
 
 def size_of(found: ProgramComparison) -> str:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from fatektool.jobs.times import utc
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from fatektool.client import Plc
@@ -127,9 +127,20 @@ def inspect_document(backup: Backup, file: Path) -> dict[str, Any]:
     }
 
 
-def program_differences(found: ProgramComparison) -> dict[str, Any]:
-    """Two programs' differences, networks and all: ``a`` is the file, or the first file."""
-    return {**differences(found.pages), "networks": networks_document(found.networks)}
+def program_differences(
+    found: ProgramComparison, comments: Mapping[str, str] | None = None
+) -> dict[str, Any]:
+    """Two programs' differences, networks and all: ``a`` is the file, or the first file.
+
+    Args:
+        found: the comparison.
+        comments: of elements; those of networks that differ are in the document.
+    """
+    lines = (line for change in found.networks or () for line in change.diff)
+    named = {element for line in lines for element in line.elements}
+    told = {element: text for element, text in (comments or {}).items() if element in named}
+    networks = networks_document(found.networks)
+    return {**differences(found.pages), "networks": networks} | ({"comments": told} if told else {})
 
 
 def networks_document(changes: Sequence[NetworkChange] | None) -> list[dict[str, Any]] | None:
@@ -169,7 +180,13 @@ def differences(comparison: Comparison) -> dict[str, Any]:
 
 
 def verify_document(
-    plc: Plc, file: Path, sha256: str, found: ProgramComparison, duration_s: float
+    plc: Plc,
+    file: Path,
+    sha256: str,
+    found: ProgramComparison,
+    duration_s: float,
+    *,
+    comments: Mapping[str, str] | None = None,
 ) -> dict[str, Any]:
     """``fatektool.verify/1``: a file's program against the PLC's."""
     return {
@@ -178,7 +195,7 @@ def verify_document(
         "file": str(file),
         "sha256": sha256,
         "duration_s": round(duration_s, 3),
-        **program_differences(found),
+        **program_differences(found, comments),
     }
 
 

@@ -14,6 +14,7 @@ from fatektool.cli.differences import size_of
 from fatektool.cli.documents import saved_document, status_document, verify_document
 from fatektool.cli.image_words import warn_of_image
 from fatektool.cli.options import connection_of
+from fatektool.cli.program_files import comments_of_entry
 from fatektool.errors import DataError, PlcError, UsageError
 from fatektool.jobs.backup import backup
 from fatektool.jobs.safekeeping import former_hash, require_ladder
@@ -158,6 +159,7 @@ def verify_work(voice: Voice) -> Callable[[PlcEntry, Turn[Done]], Done]:
 def snapshot_work(voice: Voice, folder: Path, keep: Keep | None) -> Callable[[PlcEntry, Turn[Done]], Done]:
     """``fleet snapshot``: into a folder for each PLC, as two may have the same station."""
     from fatektool.jobs.snapshot import take_snapshot
+    from fatektool.jobs.snapshot_comments import snapshot_with_comments
     from fatektool.jobs.snapshot_formats import as_json
     from fatektool.jobs.snapshot_spec import MAX_SPEC, parse_spec
     from fatektool.jobs.snapshot_store import save_dated
@@ -168,6 +170,7 @@ def snapshot_work(voice: Voice, folder: Path, keep: Keep | None) -> Callable[[Pl
         spec = parse_spec(read_bounded(entry.spec, MAX_SPEC), str(entry.spec))
         with opened(entry, turn, voice) as plc:
             snapshot = take_snapshot(plc, spec.items)
+        snapshot = snapshot_with_comments(snapshot, comments_of_entry(entry, voice.of(entry.name)))
         own = _folder(folder / entry.name)
         path = save_dated(snapshot, as_json(snapshot), own, suffix="json", keep=keep)
         wrong = f", {len(snapshot.errors)} refused: {', '.join(snapshot.errors)}"[:200]

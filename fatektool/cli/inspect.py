@@ -12,7 +12,7 @@ from fatektool.cli.image_words import warn_of_image
 from fatektool.cli.options import PATH, voice_options
 from fatektool.cli.output import Voice, table
 from fatektool.cli.pairs import together
-from fatektool.cli.program_files import encoding_option, program_file
+from fatektool.cli.program_files import encoding_option, program_file, require_comments
 from fatektool.cli.project_view import project_document, project_rows, sum_words
 from fatektool.program.files import write_whole
 
@@ -34,6 +34,7 @@ def inspect_command(file: Path, voice: Voice, *, raw: Path | None, force: bool, 
     together("force", holds=raw is not None, needs="--raw")
     require_raw_name(raw, file)
     on_file = program_file(file, voice, encoding)
+    require_comments(None, on_file)
     found = on_file.backup
     if on_file.project is None or on_file.header.family is not None:  # an FBE's image has no known header
         warn_of_image(on_file.program, voice)

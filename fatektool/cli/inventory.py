@@ -65,7 +65,7 @@ def _faults_of_files(found: Inventory) -> Iterator[Fault]:
 
     seen: set[Path] = set()
     for entry in found.plcs.values():
-        for key, path in (("spec", entry.spec), ("reference", entry.reference)):
+        for key, path in (("spec", entry.spec), ("reference", entry.reference), ("project", entry.project)):
             if path is None or path in seen:
                 continue
             seen.add(path)
@@ -108,6 +108,7 @@ def _entry_document(entry: PlcEntry) -> dict[str, Any]:
         "tags": list(entry.tags),
         "spec": None if entry.spec is None else str(entry.spec),
         "reference": None if entry.reference is None else str(entry.reference),
+        "project": None if entry.project is None else str(entry.project),
         "expect": entry.expect,
         "read_only": entry.read_only,
     }

@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from fatektool.cli.differences import beside
 from fatektool.cli.image_words import warn_of_image
 from fatektool.cli.options import PATH, voice_options
 from fatektool.cli.program_files import (
-    beside,
     comments_from,
     comments_options,
     program_file,
+    require_comments,
     warn_of_unknown,
 )
 from fatektool.cli.report import report_option, write_report
@@ -84,6 +85,7 @@ def listing_command(
     """
     ranges = [NetworkRange.parse(text) for text in wanted]
     found = program_file(file, voice, encoding)
+    require_comments(comments, found)
     texts = comments_from(comments, voice, encoding) or found.comments
     in_lines = NO_COMMENTS if words and comments is None else texts
     networks = _chosen(found.networks, ranges)

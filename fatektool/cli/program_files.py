@@ -7,13 +7,16 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from fatektool.cli.options import PATH
-from fatektool.project.program_file import load_program
+from fatektool.cli.pairs import together
+from fatektool.errors import DataError, FatektoolError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from pathlib import Path
 
+    from fatektool.cli.options import Connection
     from fatektool.cli.output import Voice
+    from fatektool.inventory.entries import PlcEntry
     from fatektool.project.comments import Comments
     from fatektool.project.program_file import ProgramFile
 
@@ -51,9 +54,21 @@ def comments_options(function: F) -> F:
 
 def program_file(path: Path, voice: Voice, encoding: str | None = None) -> ProgramFile:
     """Read a backup or a project, and say what is odd about its comments."""
+    from fatektool.project.program_file import load_program
+
     found = load_program(path, encoding=encoding)
     warn_of_code_page(found, voice)
     return found
+
+
+def require_comments(comments: Path | None, *files: ProgramFile) -> None:
+    """Refuse ``--encoding`` where nothing has comments.
+
+    Raises:
+        UsageError: no project is named.
+    """
+    holds = comments is not None or any(file.project is not None for file in files)
+    together("encoding", holds=holds, needs="--comments or a project as FILE")
 
 
 def warn_of_code_page(found: ProgramFile, voice: Voice) -> None:
@@ -73,14 +88,41 @@ def comments_from(path: Path | None, voice: Voice, encoding: str | None = None) 
     """
     if path is None:
         return None
-    from fatektool.errors import DataError
-
     found = program_file(path, voice, encoding)
     if found.project is None:
         raise DataError(
             f"{path}: a backup has no comments, expected a WinProladder project (.pdw)", file=str(path)
         )
     return found.comments
+
+
+def comments_for(
+    connection: Connection, path: Path | None, voice: Voice, encoding: str | None = None
+) -> Mapping[str, str]:
+    """The comments of a PLC's elements: of the project that the user names, else of the inventory's for it.
+
+    That the inventory's cannot be read is no reason not to look at the PLC: it is a warning.
+
+    Raises:
+        DataError: the project that the user names does not hold.
+    """
+    entry = connection.entry
+    known = entry is not None and entry.project is not None
+    together("encoding", holds=path is not None or known, needs="--comments, or a project in the inventory")
+    named = comments_from(path, voice, encoding)
+    if named is not None:
+        return named.elements
+    return {} if entry is None else comments_of_entry(entry, voice, encoding)
+
+
+def comments_of_entry(entry: PlcEntry, voice: Voice, encoding: str | None = None) -> Mapping[str, str]:
+    """The comments of a PLC's elements from the inventory's ``project``; a warning if that cannot be read."""
+    try:
+        found = comments_from(entry.project, voice, encoding)
+    except FatektoolError as error:
+        voice.warn(f"no comments: {error.message}")
+        return {}
+    return {} if found is None else found.elements
 
 
 def warn_of_unknown(found: ProgramFile, voice: Voice) -> None:
@@ -92,11 +134,3 @@ def warn_of_unknown(found: ProgramFile, voice: Voice) -> None:
             f"{found.name}: {unknown} of {len(code.words)} words of code are not understood and shown as "
             "they are (??); behind them reading went on at the next word that begins a network"
         )
-
-
-def beside(elements: tuple[str, ...], comments: Mapping[str, str]) -> str:
-    """The comments of an instruction's elements, as they are shown beside it."""
-    known = [(element, comments[element]) for element in elements if element in comments]
-    if len(elements) == 1:
-        return known[0][1] if known else ""
-    return ", ".join(f"{element}: {comment}" for element, comment in known)

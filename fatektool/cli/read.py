@@ -11,13 +11,15 @@ from fatektool.cli.documents import where
 from fatektool.cli.modbus_map import modbus_map_option
 from fatektool.cli.options import Connection, connection_options
 from fatektool.cli.output import Voice, table
+from fatektool.cli.program_files import comments_for, comments_options
 from fatektool.errors import DataError, PlcError
 from fatektool.jobs.registers import read_elements
 from fatektool.jobs.selection import parse_items
 from fatektool.protocol.values import Value, decode
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
+    from pathlib import Path
 
     from fatektool.jobs.registers import Reading
     from fatektool.jobs.selection import Item
@@ -36,11 +38,20 @@ SELECTION = (
     ),
 )  # fmt: skip
 @click.argument("elements", nargs=-1, required=True)
+@comments_options
 @connection_options
 @modbus_map_option
-def read_command(elements: tuple[str, ...], connection: Connection, voice: Voice) -> int:
+def read_command(
+    elements: tuple[str, ...],
+    connection: Connection,
+    voice: Voice,
+    *,
+    comments: Path | None,
+    encoding: str | None,
+) -> int:
     """Read elements of any kind."""
     items = parse_items(elements)
+    texts = commented(items, comments_for(connection, comments, voice, encoding))
     with connection.open(voice) as plc:
         reading = read_elements(plc, [item.element for item in items])
         values, errors = typed(items, reading)
@@ -50,13 +61,41 @@ def read_command(elements: tuple[str, ...], connection: Connection, voice: Voice
             **where(plc),
             "requests": reading.requests,
             "values": values,
-            "elements": raw_values(items, reading),
+            "elements": with_comments(raw_values(items, reading), texts),
             "errors": errors,
             "not_asked": not_asked,
         }
-    voice.show(document, table((key, shown(value, None)) for key, value in values.items()))
+    voice.show(document, value_lines(values, texts))
     warn_of(errors, voice, not_asked)
     return PlcError.exit_code if errors else 0
+
+
+def commented(items: Sequence[Item], comments: Mapping[str, str]) -> dict[str, str]:
+    """The comments of items by key, of those that have one."""
+    if not comments:
+        return {}
+    from fatektool.project.comments import comment_of
+
+    found = ((item.key, comment_of(str(item.element), comments)) for item in items)
+    return {key: comment for key, comment in found if comment is not None}
+
+
+def with_comments(
+    elements: dict[str, dict[str, Any]], comments: Mapping[str, str]
+) -> dict[str, dict[str, Any]]:
+    """What is said of elements by key, with their comments."""
+    return {
+        key: part | ({"comment": comments[key]} if key in comments else {}) for key, part in elements.items()
+    }
+
+
+def value_lines(values: Mapping[str, Value | None], comments: Mapping[str, str]) -> Iterator[str]:
+    """Values by key for people, the comments behind them."""
+    texts = {key: shown(value, None) for key, value in values.items()}
+    width = max((len(text) for text in texts.values()), default=0)
+    return table(
+        (key, f"{text:<{width}}  {comments[key]}" if key in comments else text) for key, text in texts.items()
+    )
 
 
 def warn_of(errors: Mapping[str, str], voice: Voice, not_asked: Sequence[str] = ()) -> None:

@@ -14,12 +14,14 @@ import click
 from fatektool.cli.modbus_map import modbus_map_option
 from fatektool.cli.options import PATH, Connection, connection_options_but_format, voice_options
 from fatektool.cli.places import require_folder_for, require_free
+from fatektool.cli.program_files import comments_for, comments_options
 from fatektool.cli.read import SELECTION, shown, warn_of
 from fatektool.cli.report import report_option, write_snapshot_report
 from fatektool.cli.snapshot_apply import apply_command
 from fatektool.errors import PlcError, UsageError
 from fatektool.jobs.selection import parse_items
 from fatektool.jobs.snapshot import load_snapshot, take_all, take_snapshot
+from fatektool.jobs.snapshot_comments import snapshot_with_comments
 from fatektool.jobs.snapshot_compare import Change, compare_snapshots
 from fatektool.jobs.snapshot_formats import FORMATS, SUFFIXES, as_json, as_ndjson, as_prometheus
 from fatektool.jobs.snapshot_spec import MAX_SPEC, Spec, items_of, parse_spec
@@ -112,6 +114,7 @@ def snapshot_command() -> None:
 @click.option(
     "--keep", metavar="N|DAYSd", help="Keep N snapshots, or those of so many days, in DIR or FILE.ndjson."
 )
+@comments_options
 @report_option
 @either_format
 @connection_options_but_format
@@ -129,8 +132,11 @@ def take_command(
     form: str | None,
     keep: str | None,
     report: Path | None,
+    comments: Path | None,
+    encoding: str | None,
 ) -> int:
     """Read data from the PLC."""
+    texts = comments_for(connection, comments, voice, encoding)
     items = selected(elements, spec, groups, whole=whole).items
     kept = None if keep is None else Keep.parse(keep)
     to_stdout = output == "-" or (output is None and append is None)
@@ -146,6 +152,7 @@ def take_command(
     _require_places(output, folder, append, kept, voice)
     with connection.open(voice, needs=(Command.DETAILED_STATUS,) if whole else ()) as plc:
         snapshot = take_all(plc) if whole else take_snapshot(plc, items)
+    snapshot = snapshot_with_comments(snapshot, texts)
     if form == "prometheus":
         text = as_prometheus(snapshot, _name(output, folder, spec))
     else:

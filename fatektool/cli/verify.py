@@ -9,7 +9,7 @@ import click
 from fatektool.cli.differences import program_lines
 from fatektool.cli.documents import verify_document
 from fatektool.cli.options import PATH, Connection, connection_options
-from fatektool.cli.program_files import program_file
+from fatektool.cli.program_files import comments_for, comments_options, program_file
 from fatektool.cli.report import report_option, write_report
 from fatektool.cli.unfinished import forget, warn_of_unfinished
 from fatektool.jobs.verify import verify_file
@@ -23,19 +23,31 @@ if TYPE_CHECKING:
 
 @click.command("verify", epilog="Example: fatektool verify press.json -p /dev/ttyUSB0 || mail the-team")
 @click.argument("file", type=PATH)
+@comments_options
 @report_option
 @connection_options
-def verify_command(connection: Connection, voice: Voice, *, file: Path, report: Path | None) -> int:
+def verify_command(
+    connection: Connection,
+    voice: Voice,
+    *,
+    file: Path,
+    report: Path | None,
+    comments: Path | None,
+    encoding: str | None,
+) -> int:
     """Compare the PLC's program with FILE, a backup or a WinProladder project: exit 0 if the same, 1 if not.
 
     What seems to differ is read twice. The PLC may run.
     """
-    on_file = program_file(file, voice)
+    on_file = program_file(file, voice, encoding)
+    texts = on_file.element_comments
+    if comments is not None or not texts:
+        texts = comments_for(connection, comments, voice, encoding)
     with connection.open(voice, needs=(Command.READ_PAGE,), finishes=True) as plc, voice.progress() as bar:
         clock = plc.link.transport.clock
         began = clock()
         found = verify_file(plc, on_file, progress=bar.update)
-        document = verify_document(plc, file, on_file.sha256, found, clock() - began)
+        document = verify_document(plc, file, on_file.sha256, found, clock() - began, comments=texts)
     if found.same:
         forget(connection.target, connection.station, voice)
     else:
@@ -48,5 +60,5 @@ def verify_command(connection: Connection, voice: Voice, *, file: Path, report: 
         from fatektool.report.program import verify_report
 
         write_report(report, verify_report(document, found.a))
-    voice.show(document, program_lines(found, same, "file", "PLC"))
+    voice.show(document, program_lines(found, same, "file", "PLC", texts))
     return 0 if found.same else 1

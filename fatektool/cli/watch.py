@@ -14,7 +14,8 @@ from fatektool.cli.documents import error_document
 from fatektool.cli.modbus_map import modbus_map_option
 from fatektool.cli.options import PATH, Connection, Seconds, connection_options
 from fatektool.cli.output import tell
-from fatektool.cli.read import SELECTION, shown
+from fatektool.cli.program_files import comments_for, comments_options
+from fatektool.cli.read import SELECTION, commented, shown
 from fatektool.cli.report import report_option, watch_report
 from fatektool.cli.snapshot import selected
 from fatektool.cli.streams import reader_is_gone
@@ -23,7 +24,7 @@ from fatektool.jobs.snapshot import Snapshot, take_snapshot
 from fatektool.jobs.times import utc
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
     from pathlib import Path
 
     from fatektool.cli.output import Voice
@@ -57,6 +58,7 @@ _AROUND: Final = 4  # title, header, what is left out, and the line of the curso
     help="From round to round; by default interval_s of --spec, else 1.",
 )
 @click.option("--count", type=click.IntRange(1), help="So many rounds; by default until Ctrl-C.")
+@comments_options
 @report_option
 @connection_options
 @modbus_map_option
@@ -70,14 +72,20 @@ def watch_command(
     interval: float | None,
     count: int | None,
     report: Path | None,
+    comments: Path | None,
+    encoding: str | None,
 ) -> int:
     """Show values live."""
     wanted = selected(elements, spec, groups, whole=False)
+    texts = commented(
+        [item.item for item in wanted.items], comments_for(connection, comments, voice, encoding)
+    )
     pace_s = next((pace for pace in (interval, wanted.interval_s) if pace is not None), 1.0)
     try:
         with connection.open(voice, lend=True) as plc, watch_report(report, plc, voice) as kept:
             rounds = _rounds(plc, wanted.items, pace_s, count, voice, kept=kept)
-            last = _live(rounds, wanted.items) if sys.stdout.isatty() and not voice.json else _lines(rounds)
+            live = sys.stdout.isatty() and not voice.json
+            last = _live(rounds, wanted.items, texts) if live else _lines(rounds, texts)
     except (FatektoolError, KeyboardInterrupt) as error:
         if not voice.json:
             raise
@@ -95,11 +103,11 @@ def _failed(error: FatektoolError | KeyboardInterrupt) -> int:
     return told.exit_code
 
 
-def _lines(rounds: Iterator[Snapshot]) -> Snapshot | None:
+def _lines(rounds: Iterator[Snapshot], comments: Mapping[str, str]) -> Snapshot | None:
     """Print a line a round; give the last."""
     snapshot = None
     for snapshot in rounds:
-        click.echo(json.dumps(_document(snapshot), allow_nan=False))
+        click.echo(json.dumps(_document(snapshot, comments), allow_nan=False))
         sys.stdout.flush()
         if reader_is_gone():
             break
@@ -151,8 +159,8 @@ def _rounds(
             plc.lend(max(0.0, due - time.monotonic()), broken=broken)
 
 
-def _document(snapshot: Snapshot) -> dict[str, Any]:
-    return {
+def _document(snapshot: Snapshot, comments: Mapping[str, str]) -> dict[str, Any]:
+    document: dict[str, Any] = {
         "schema": "fatektool.watch/1",
         "time": snapshot.time,
         "target": snapshot.target,
@@ -164,9 +172,10 @@ def _document(snapshot: Snapshot) -> dict[str, Any]:
         "errors": snapshot.errors,
         "not_asked": snapshot.not_asked,
     }
+    return document | ({"comments": comments} if comments else {})
 
 
-def _live(rounds: Iterator[Snapshot], items: list[SpecItem]) -> Snapshot | None:
+def _live(rounds: Iterator[Snapshot], items: list[SpecItem], comments: Mapping[str, str]) -> Snapshot | None:
     """Show a table that changes; give the last round."""
     from rich.live import Live
 
@@ -175,7 +184,7 @@ def _live(rounds: Iterator[Snapshot], items: list[SpecItem]) -> Snapshot | None:
     snapshot = None
     with Live(auto_refresh=False, vertical_overflow="crop") as live:
         for snapshot in rounds:
-            live.update(_table(snapshot, before, trends, live.console.size), refresh=True)
+            live.update(_table(snapshot, before, trends, comments, live.console.size), refresh=True)
             before = snapshot.values
     return snapshot
 
@@ -184,6 +193,7 @@ def _table(
     snapshot: Snapshot,
     before: dict[str, Value | None],
     trends: dict[str, deque[float]],
+    comments: Mapping[str, str],
     size: tuple[int, int],
 ) -> Any:
     """What is on the terminal: as many rows as it has room for, and a word about the others.
@@ -192,6 +202,7 @@ def _table(
         snapshot: this round's.
         before: the values of the round before.
         trends: the numbers so far, by key; gets this round's.
+        comments: of the elements, by key.
         size: the terminal's columns and lines.
     """
     from rich.console import Group
@@ -206,6 +217,8 @@ def _table(
     table.add_column("value ", justify="right", no_wrap=True, min_width=_VALUE)
     if with_units:
         table.add_column("unit", no_wrap=True)
+    if comments:
+        table.add_column("comment", no_wrap=True)
     table.add_column("trend", no_wrap=True)
     for value, trended in zip(snapshot.values.values(), trends.values(), strict=True):
         if isinstance(value, int | float):
@@ -214,7 +227,9 @@ def _table(
         max(4, *(len(str(part.get("unit", ""))) for part in snapshot.elements.values())) if with_units else 0
     )
     values = max(_VALUE, *(len(shown(value, None)) + 1 for value in snapshot.values.values()))
-    fits = max(1, columns - names - values - units - _GAPS)
+    widest = max(map(len, comments.values()), default=0)
+    remarks = min(max(_VALUE, widest), columns // 4) if comments else 0
+    fits = max(1, columns - names - values - units - remarks - _GAPS - bool(comments))
     room = max(1, lines - _AROUND)
     for key, value in list(snapshot.values.items())[:room]:
         text = Text(shown(value, None))
@@ -224,7 +239,8 @@ def _table(
             text.append(" ")
         unit = [Text(str(snapshot.elements[key].get("unit", "")))] if with_units else []
         last = snapshot.errors[key] if key in snapshot.errors else trend(trends[key])[-fits:]
-        table.add_row(Text(key), text, *unit, Text(last))
+        remark = [Text(comments.get(key, "")[:remarks])] if comments else []
+        table.add_row(Text(key), text, *unit, *remark, Text(last))
     mode = {True: "RUN", False: "STOP", None: "mode unknown"}[snapshot.running]
     title = f"{snapshot.time}  {mode}  station {snapshot.station} on {snapshot.target}"
     parts: list[Any] = [Text(title, no_wrap=True, overflow="ellipsis"), table]

@@ -7,7 +7,13 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fatektool.cli.options import PATH, voice_options
-from fatektool.cli.program_files import comments_from, comments_options, program_file, warn_of_unknown
+from fatektool.cli.program_files import (
+    comments_from,
+    comments_options,
+    program_file,
+    require_comments,
+    warn_of_unknown,
+)
 from fatektool.errors import UsageError
 from fatektool.ladder.addresses import spans_of
 from fatektool.ladder.cross_reference import CrossReference, Kind
@@ -46,6 +52,7 @@ def xref_command(
         if not spans_of(element):
             raise UsageError(f"no element {element!r} of a program: expected such as M421, R100, WM8, T5")
     found = program_file(file, voice, encoding)
+    require_comments(comments, found)
     code = found.require_code()
     texts = (comments_from(comments, voice, encoding) or found.comments).elements
     warn_of_unknown(found, voice)

@@ -46,7 +46,8 @@ class PlcEntry:
         lock_wait_s: how long to wait for a port that another process uses.
         tags: words by which PLCs are picked.
         spec: the snapshot specification; None if there is none.
-        reference: a backup of the program that ought to be in it; None if there is none.
+        reference: a backup or project of the program that ought to be in it; None if there is none.
+        project: the WinProladder project with its elements' comments; None if there is none.
         expect: ``run``, ``stop`` or ``any``: the mode that it ought to be in.
         read_only: refuse whatever would write to it.
     """
@@ -63,6 +64,7 @@ class PlcEntry:
     tags: tuple[str, ...] = ()
     spec: Path | None = None
     reference: Path | None = None
+    project: Path | None = None
     expect: str = "run"
     read_only: bool = False
 
@@ -153,7 +155,9 @@ class _Reader:
         for key in document:
             if key not in {"defaults", "plc"}:
                 self._fault("expected [defaults] and [plc.NAME] tables", key, got=key)
-        defaults = self._table(document.get("defaults", {}), ("defaults",), _CHECKS.keys() - {"reference"})
+        defaults = self._table(
+            document.get("defaults", {}), ("defaults",), _CHECKS.keys() - {"reference", "project"}
+        )
         plcs = document.get("plc", {})
         if not isinstance(plcs, dict):
             self._fault("plc: expected [plc.NAME] tables", "plc")
@@ -310,6 +314,7 @@ _CHECKS: Final[dict[str, tuple[str, Callable[[object, Path], Any]]]] = {
     "tags": ("a list of texts", _tags),
     "spec": ("the name of a file", _path),
     "reference": ("the name of a file", _path),
+    "project": ("the name of a file", _path),
     "read_only": ("true or false", _flag),
     "expect": (f"one of {', '.join(EXPECTATIONS)}", _one_of(EXPECTATIONS)),
 }

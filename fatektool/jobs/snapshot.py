@@ -4,7 +4,7 @@
 
     time target station protocol running duration_s requests
     values   {key: value}                       what people and scripts want
-    elements {key: {element, type, raw, unit?, scale?, offset?}}    what it takes to put it back
+    elements {key: {element, type, raw, unit?, scale?, offset?, comment?}}   what it takes to put it back
     errors   {key: why its value is null}
     not_asked [key, …]                          those of errors that the PLC was not asked for, if any
 """
@@ -58,7 +58,7 @@ class Snapshot:
         duration_s: how long the reading took.
         requests: how many requests it took.
         values: by key; None where there is an error.
-        elements: by key: element, type, raw and, where there is one, unit, scale, offset.
+        elements: by key: element, type, raw and, where there is one, unit, scale, offset, comment.
         errors: by key: why there is no value.
         not_asked: keys of ``errors`` that the PLC was not asked for; not in the document if none are.
     """
@@ -287,8 +287,9 @@ def _check(part: object, value: Value | None, where: str) -> None:
         raise DataError(f"{where} is damaged: {element} is no {kind.value}")
     numbers = all(each is None or _finite(each) for each in (scale, offset))
     scaled = (scale, offset) != (None, None)
-    if not numbers or not isinstance(part.get("unit", ""), str) or (scaled and kind not in NUMBERS):
-        raise DataError(f"{where} is damaged: unit, scale or offset")
+    texts = all(isinstance(part.get(name, ""), str) for name in ("unit", "comment"))
+    if not numbers or not texts or (scaled and kind not in NUMBERS):
+        raise DataError(f"{where} is damaged: unit, scale, offset or comment")
     if raw is None and "raw" in part:
         if value is None:
             return

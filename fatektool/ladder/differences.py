@@ -25,6 +25,23 @@ class Change(StrEnum):
     CHANGED = "changed"
 
 
+class DiffLine(NamedTuple):
+    """A line of a unified diff of instructions.
+
+    Attributes:
+        sign: ``-``, ``+`` or a space.
+        text: the instruction.
+        elements: those that it names.
+    """
+
+    sign: str
+    text: str
+    elements: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return f"{self.sign}{self.text}"
+
+
 @dataclass(frozen=True, slots=True)
 class NetworkChange:
     """A network that differs.
@@ -32,12 +49,17 @@ class NetworkChange:
     Attributes:
         a: the network of the first program; None if it was added.
         b: that of the second; None if it was removed.
-        lines: the instructions, each behind ``-``, ``+`` or a space, as in a unified diff.
+        diff: the instructions, as in a unified diff.
     """
 
     a: Network | None
     b: Network | None
-    lines: tuple[str, ...]
+    diff: tuple[DiffLine, ...]
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """The instructions, each behind ``-``, ``+`` or a space."""
+        return tuple(map(str, self.diff))
 
     @property
     def change(self) -> Change:
@@ -149,7 +171,7 @@ def _change(a: Network | None, b: Network | None) -> NetworkChange:
     return NetworkChange(a, b, tuple(_changed_lines(a.instructions, b.instructions)))
 
 
-def _changed_lines(a: Sequence[Instruction], b: Sequence[Instruction]) -> Iterator[str]:
+def _changed_lines(a: Sequence[Instruction], b: Sequence[Instruction]) -> Iterator[DiffLine]:
     for block in align([found.words for found in a], [found.words for found in b]):
         old, new = a[block.a_first : block.a_end], b[block.b_first : block.b_end]
         if block.equal:
@@ -162,7 +184,7 @@ def _changed_lines(a: Sequence[Instruction], b: Sequence[Instruction]) -> Iterat
             yield from _lines("+", new)
 
 
-def _lines(sign: str, instructions: Iterable[Instruction], *, words: bool = False) -> Iterator[str]:
+def _lines(sign: str, instructions: Iterable[Instruction], *, words: bool = False) -> Iterator[DiffLine]:
     for found in instructions:
         shown = f" ({' '.join(f'{word:04X}' for word in found.words)})" if words and found.text else ""
-        yield f"{sign}{instruction_line(found)}{shown}"
+        yield DiffLine(sign, f"{instruction_line(found)}{shown}", found.elements)

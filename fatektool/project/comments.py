@@ -107,6 +107,20 @@ def comments_of(records: Sequence[Record], encoding: str | None = None) -> Comme
     )
 
 
+def comment_of(element: str, comments: Mapping[str, str]) -> str | None:
+    """The comment of an element: its own, or that of the register or timer that it is a part or a pair of.
+
+    Args:
+        element: such as ``DR2``, which has that of R2, or ``RT5``, which has that of T5.
+        comments: a project's.
+    """
+    plain = element if element[1:2].isdigit() else element.removeprefix("D")  # D2 is no pair
+    for name in (element, plain, plain.removeprefix("R") if plain[:2] in {"RT", "RC"} else plain):
+        if name in comments:
+            return comments[name]
+    return None
+
+
 def short_element(text: str) -> str | None:
     """An element as it is written everywhere here: ``R12`` for ``R00012``; None for what is none."""
     found = _ELEMENT.fullmatch(text.strip().upper())

@@ -30,8 +30,8 @@ def test_check(cli: Cli) -> None:
     Path("fatek.toml").write_text(PRESS + "x = 1\n[plc.q]\n")
     done = cli("inventory", "check")
     assert done.code == 1
-    keys = "baud, expect, format, lock_wait_s, protocol, read_only, reference, retries, spec, station, tags, "
-    keys += "target, timeout_s"
+    keys = "baud, expect, format, lock_wait_s, project, protocol, read_only, reference, retries, spec, "
+    keys += "station, tags, target, timeout_s"
     assert done.out.splitlines() == [
         f"fatek.toml: line 5: plc.press: unknown key 'x': expected one of {keys}",
         'fatek.toml: line 6: q: expected target = "tcp://HOST" or another',
