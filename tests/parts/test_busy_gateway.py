@@ -13,9 +13,12 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from fatektool.cli import fleet_jobs
+from fatektool.jobs.status import read_status
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.pty_door import PTY_SUPPORTED
 from fatektool.simulator.servers import Server, running
+from fatektool.transport.lock import PortLock
 from tests.fleet.gateway import plcs_of
 from tests.program.samples import program
 
@@ -25,6 +28,8 @@ from .programs import needs
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from fatektool.client import Plc
+    from fatektool.jobs.status import StatusReport
     from tests.cli.house import Cli
 
 WORDS = 128
@@ -151,6 +156,34 @@ def test_a_plc_that_is_silent_does_not_keep_the_line_from_the_next(cli: Cli) -> 
         Path("fatek.toml").write_text(text, encoding="utf-8")
         done = cli("fleet", "status", "--json")
     assert [plc["exit_code"] for plc in plcs_of(done.document("fleet")).values()] == [0, 3, 0], done.err
+
+
+def test_who_waits_for_the_line_gets_it_between_two_plcs(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    order: list[str] = []
+    with busy_gateway(0.05, None) as gateway:
+        waiting = PortLock(gateway.target.partition("://")[2], 60)
+
+        def wait() -> None:
+            waiting.acquire()
+            order.append("other")
+            waiting.release()
+
+        other = threading.Thread(target=wait)
+
+        def status(plc: Plc, *, brief: bool) -> StatusReport:
+            if not order:
+                other.start()
+                while not waiting.wanted():
+                    threading.Event().wait(0.01)
+            order.append("plc")
+            return read_status(plc, brief=brief)
+
+        monkeypatch.setattr(fleet_jobs, "read_status", status)
+        inventory(*[gateway.target] * 3)
+        assert cli("fleet", "status", "--brief").code == 0
+        other.join()
+    assert order == ["plc", "other", "plc", "plc"]
+    assert gateway.served == 2
 
 
 # --- ser2net ------------------------------------------------------------------------------------------
