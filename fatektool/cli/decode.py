@@ -45,10 +45,11 @@ def decode_command(
     *,
     protocol: str | None,
     role: str | None,
-) -> None:
+) -> int:
     """Explain frames: every field, and whether the checksum is right.
 
-    They are given as HEX, or come from a trace FILE (.ndjson, .pcap).
+    They are given as HEX, or come from a trace FILE (.ndjson, .pcap). Exit 5 if one is damaged, such as by a
+    wrong checksum, or is none; all are shown nevertheless.
     """
     records, damage = _gathered(frames)
     together("role", holds=all(not record.time for record in records), needs="frames given as hex")
@@ -70,6 +71,10 @@ def decode_command(
         "frames": [_document(record, explanation) for record, explanation in found],
     }
     voice.show(document, _lines(found, binary=explainer.binary))
+    damaged = sum(explanation.fault is not None for _, explanation in found)
+    if damaged:
+        voice.warn(f"{damaged} of {len(found)} frames {'is' if damaged == 1 else 'are'} damaged")
+    return DataError.exit_code if damaged else 0
 
 
 def _protocol_of(records: Iterable[TraceRecord]) -> str:

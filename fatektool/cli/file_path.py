@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING
 
 import click
 
 if TYPE_CHECKING:
-    import os
     from pathlib import Path
 
 
@@ -18,4 +18,9 @@ class FilePath(click.Path):
         """Make one of what was given."""
         from pathlib import Path
 
-        return Path(value)
+        return Path(standard(os.fspath(value)))
+
+
+def standard(name: str) -> str:
+    """``-`` for the names that the system has for the standard streams."""
+    return "-" if name in {"/dev/stdin", "/dev/stdout"} else name

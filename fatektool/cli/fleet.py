@@ -10,7 +10,7 @@ import click
 from fatektool.cli.alarms import Alarms, alarm_options
 from fatektool.cli.fleet_check import check_command
 from fatektool.cli.fleet_jobs import backup_work, snapshot_work, status_work, verify_work
-from fatektool.cli.fleet_run import Orders, ended, fleet_options, run_fleet
+from fatektool.cli.fleet_run import Orders, ended, fleet_options, news_option, run_fleet
 from fatektool.cli.options import PATH
 from fatektool.cli.places import require_folder_for
 from fatektool.errors import FatektoolError, UsageError
@@ -35,6 +35,7 @@ def fleet_command() -> None:
 @fleet_command.command("status", epilog="Example: fatektool fleet status --select hall-1")
 @click.option("--brief", is_flag=True, help="The brief status (40) alone.")
 @alarm_options(changes=False)
+@news_option
 @fleet_options
 def status_command(orders: Orders, alarms: Alarms, voice: Voice, *, brief: bool) -> int:
     """Show how the PLCs are."""
@@ -57,6 +58,7 @@ def status_command(orders: Orders, alarms: Alarms, voice: Voice, *, brief: bool)
 @click.option("--single-pass", is_flag=True, help="Read once instead of twice; nothing is compared.")
 @click.option("--any-header", is_flag=True, help="Keep images whose header does not hold, marked as such.")
 @alarm_options(changes=True)
+@news_option
 @fleet_options
 def backup_command(
     orders: Orders,
@@ -112,6 +114,7 @@ def _push(history: Path, remote: str, voice: Voice) -> dict[str, Any]:
 
 @fleet_command.command("verify", epilog="Example: fatektool fleet verify --on-change 'mail-alarm the-team'")
 @alarm_options(changes=True)
+@news_option
 @fleet_options
 def verify_command(orders: Orders, alarms: Alarms, voice: Voice) -> int:
     """Compare each PLC's program with its reference, the backup that the inventory names."""
@@ -123,6 +126,7 @@ def verify_command(orders: Orders, alarms: Alarms, voice: Voice) -> int:
 @click.option("--dir", "folder", type=PATH, required=True, help="Write a dated file for each, in DIR/NAME/.")
 @click.option("--keep", metavar="N|DAYSd", help="Keep N snapshots of each, or those of so many days.")
 @alarm_options(changes=False)
+@news_option
 @fleet_options
 def snapshot_command(orders: Orders, alarms: Alarms, voice: Voice, *, folder: Path, keep: str | None) -> int:
     """Read each PLC's data, as the specification says that the inventory names."""

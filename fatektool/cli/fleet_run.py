@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 F = TypeVar("F", bound="Callable[..., Any]")
 
 _LOOK_S = 0.2
+_NEWS = "fatektool.news"
 _SLOWEST = 5
 
 
@@ -120,6 +121,26 @@ def fleet_options(function: F) -> F:
     return with_orders  # type: ignore[return-value]  # click's decorators hand back what they get
 
 
+def news_option(function: F) -> F:
+    """``--news``, for a command that prints a line for each PLC."""
+
+    def keep(context: click.Context, _: click.Parameter, value: bool) -> None:  # click's call
+        context.meta[_NEWS] = value
+
+    return click.option(
+        "--news",
+        is_flag=True,
+        expose_value=False,
+        callback=keep,
+        help="Print only the PLCs that are not well or have changed.",
+    )(function)
+
+
+def _only_news() -> bool:
+    context = click.get_current_context(silent=True)
+    return context is not None and bool(context.meta.get(_NEWS))
+
+
 def run_fleet(
     job: str,
     orders: Orders,
@@ -169,7 +190,7 @@ def run_fleet(
         view.line(told)
         alarms.tell(job, told, voice)
 
-    view = View(job, list(entries), voice, lines=lines)
+    view = View(job, list(entries), voice, lines=lines, news=_only_news())
     with view, Fleet(tasks, orders.jobs, orders.deadline_s) as fleet:
         try:
             for turn in fleet.ended(_LOOK_S if view.live else None):

@@ -36,15 +36,16 @@ class View:
         names: of all PLCs.
         voice: how the command talks.
         lines: False for no line a PLC.
+        news: no line for a PLC that is well and unchanged.
     """
 
-    def __init__(self, job: str, names: list[str], voice: Voice, *, lines: bool) -> None:
+    def __init__(self, job: str, names: list[str], voice: Voice, *, lines: bool, news: bool) -> None:
         self._job = job
         self._width = min(_LONGEST_NAME, max(map(len, names), default=0))
         self._total = len(names)
         self._ended = self._not_well = 0
         self._lines = lines and not voice.json
-        self._quiet = voice.quiet
+        self._news = news
         self._refreshed = 0.0
         self.live = shows_progress(voice)
 
@@ -70,7 +71,7 @@ class View:
         self._ended += 1
         self._not_well += told.exit_code != 0
         nothing_new = told.exit_code == 0 and not (told.done is not None and told.done.changed)
-        if not self._lines or (self._quiet and nothing_new):
+        if not self._lines or (self._news and nothing_new):
             return
         state = _WORDS.get(told.exit_code, f"FAILED {told.exit_code}")
         text = f"{told.name:<{self._width}}  {state:<8}  {' '.join(told.words.split())}"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -195,7 +194,7 @@ def _scanned(scan: Path, name: str) -> dict[str, dict[str, Any]]:
         DataError: it is none.
         UsageError: nobody was found.
     """
-    data = sys.stdin.buffer.read(_MAX_SCAN) if str(scan) == "-" else read_bounded(scan, _MAX_SCAN)
+    data = read_bounded(scan, _MAX_SCAN)
     try:
         document = json.loads(data)
         schema = document["schema"]

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import click
 
+from fatektool.cli.file_path import standard
 from fatektool.cli.modbus_map import modbus_map_option
 from fatektool.cli.options import PATH, Connection, connection_options_but_format, voice_options
 from fatektool.cli.places import require_folder_for, require_free
@@ -139,6 +140,7 @@ def take_command(
     texts = comments_for(connection, comments, voice, encoding)
     items = selected(elements, spec, groups, whole=whole).items
     kept = None if keep is None else Keep.parse(keep)
+    output = None if output is None else standard(output)
     to_stdout = output == "-" or (output is None and append is None)
     output = None if output == "-" else output
     folder = _folder(output)

@@ -15,6 +15,7 @@ from fatektool.connection import CODECS, usual_format
 from fatektool.errors import DataError, UsageError
 from fatektool.inventory.find import EXPECTATIONS
 from fatektool.inventory.lines import key_lines, line_of
+from fatektool.program.plain_text import plain_text
 from fatektool.program.strict_toml import read_toml
 from fatektool.protocol.codec import require_station
 from fatektool.transport.base import LineSettings
@@ -134,7 +135,7 @@ def parse_inventory(data: bytes, file: Path) -> Inventory:
         file: the file, for the paths in it.
     """
     try:
-        text = data.decode("utf-8-sig").replace("\r\n", "\n")
+        text = plain_text(data).replace("\r\n", "\n")
         document = read_toml(text)
         lines = key_lines(text)
     except ValueError as error:  # UnicodeDecodeError and TOMLDecodeError among them

@@ -21,6 +21,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.errors import DataError, UsageError
+from fatektool.program.plain_text import plain_text
 from fatektool.program.strict_toml import read_toml
 from fatektool.protocol.link_checks import CLINK_COMMANDS, HIGH_SPEED_COMMANDS, MBUS_COMMANDS
 from fatektool.protocol.link_kinds import TableKind
@@ -70,7 +71,7 @@ def load_table(data: bytes, name: str) -> Table:
         DataError: no TOML, an unknown key, a value that fits no word; says in which transaction, from 0.
     """
     try:
-        document = read_toml(data.decode())
+        document = read_toml(plain_text(data))
     except ValueError as error:  # UnicodeDecodeError and TOMLDecodeError among them
         raise DataError(f"{name}: no TOML: {error}", file=name) from error
     known = [kind.value for kind in TableKind]

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Final
 from fatektool.errors import FatektoolError
 from fatektool.jobs.times import stamp
 from fatektool.program.archive import load_backup
-from fatektool.program.files import write_new
+from fatektool.program.files import STANDARD, write_new
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -136,5 +136,6 @@ def find_way_back(present: Program, wanted: Program, station: int, file: Path, f
 
 
 def _stem(file: Path) -> str:
-    stem = os.fsencode(file.name.removesuffix(".json"))
+    name = "stdin" if str(file) == STANDARD else file.name.removesuffix(".json")
+    stem = os.fsencode(name)
     return stem[:150].decode(errors="ignore")  # 255 bytes is all, and the rest of the name needs room too

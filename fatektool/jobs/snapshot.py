@@ -22,7 +22,7 @@ from fatektool.jobs.extent import limits
 from fatektool.jobs.registers import read_elements
 from fatektool.jobs.snapshot_spec import everything, items_in
 from fatektool.jobs.times import utc
-from fatektool.program.files import file_error
+from fatektool.program.files import STANDARD, file_error, is_pipe, read_bounded
 from fatektool.program.strict_json import read_json
 from fatektool.protocol.commands import Command
 from fatektool.protocol.elements import Element
@@ -318,6 +318,8 @@ def load_snapshot(path: Path, note: Callable[[str], None] = no_note) -> Snapshot
         UsageError: there is no such file.
         DataError: it is none, or damaged.
     """
+    if str(path) == STANDARD or is_pipe(path):
+        return parse_snapshot(read_bounded(path, MAX_SNAPSHOT), str(path), note)
     try:
         with path.open("rb") as file:
             data = file.read(MAX_SNAPSHOT + 1)

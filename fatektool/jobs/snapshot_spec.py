@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any, Final
 from fatektool.errors import DataError, UsageError
 from fatektool.jobs.extent import limits
 from fatektool.jobs.selection import Item, parse_item
+from fatektool.program.plain_text import plain_text
 from fatektool.program.strict_toml import read_toml
 from fatektool.protocol.elements import Element, Stretch
 from fatektool.protocol.values import NUMBERS, default_type
@@ -87,7 +88,7 @@ def parse_spec(data: bytes, name: str, groups: Iterable[str] = ()) -> Spec:
         DataError: no TOML, a wrong key or value; says which item.
     """
     try:
-        document = read_toml(data.decode())
+        document = read_toml(plain_text(data))
     except ValueError as error:  # UnicodeDecodeError and TOMLDecodeError among them
         raise DataError(f"{name}: no TOML: {error}") from error
     unknown = set(document) - {"item", "interval_s"}

@@ -20,11 +20,16 @@ import contextlib
 import errno
 import os
 import secrets
+import stat
+import sys
 import warnings
 from pathlib import Path
 from typing import Final
 
 from fatektool.errors import DataError, FatektoolError, FileExists, FileWarning, UsageError
+
+STANDARD: Final = "-"
+"""The name of standard input where a file is read, and of standard output where one is written."""
 
 _MODE = 0o640
 _NO_SYNC: Final = {errno.EINVAL, errno.ENOTSUP, errno.ENOSYS, errno.EBADF, errno.EPERM, errno.ENOTTY}
@@ -38,6 +43,8 @@ def require_place(path: Path, *, overwrite: bool) -> Path:
     Raises:
         UsageError: it exists and is to be kept, its folder is not there or not writable, it is no file.
     """
+    if is_pipe(path):
+        return path
     try:
         real = Path(os.path.realpath(path))
         if real.is_symlink():
@@ -45,13 +52,21 @@ def require_place(path: Path, *, overwrite: bool) -> Path:
         if real.is_dir():
             raise UsageError(f"{path} is a folder, expected a file name", file=str(path))
         if real.exists() and not real.is_file():
-            raise UsageError(f"{path} is a device or a pipe, expected a file name", file=str(path))
+            raise UsageError(f"{path} is a device, expected a file name", file=str(path))
         if real.exists() and not overwrite:
             raise exists_already(path)
         require_folder(real.parent)
     except (OSError, ValueError) as error:
         raise file_error("look at", path, error) from error
     return real
+
+
+def is_pipe(path: Path) -> bool:
+    """True for what passes bytes on to another process, as the shell's ``>(gzip > x)`` and a FIFO do."""
+    try:
+        return stat.S_ISFIFO(path.stat().st_mode)
+    except (OSError, ValueError):
+        return False
 
 
 def require_folder(path: Path) -> Path:
@@ -108,6 +123,9 @@ def write_whole(path: Path, data: bytes, *, overwrite: bool, mode: int = _MODE) 
         FileWarning: it is there, and may not survive a power cut.
     """
     real = require_place(path, overwrite=overwrite)
+    if is_pipe(real):
+        _write_through(real, data)
+        return
     temporary = real.parent / f".fatektool-{secrets.token_hex(6)}.tmp"
     try:
         write_synced(temporary, data, mode)
@@ -125,18 +143,34 @@ def write_whole(path: Path, data: bytes, *, overwrite: bool, mode: int = _MODE) 
             temporary.unlink(missing_ok=True)
 
 
+def _write_through(path: Path, data: bytes) -> None:
+    """Give all bytes to a pipe: what becomes of them is its reader's."""
+    try:
+        with path.open("wb") as pipe:
+            pipe.write(data)
+    except OSError as error:
+        raise file_error("write", path, error) from error
+
+
 def read_bounded(path: Path, limit: int) -> bytes:
-    """Read a whole file of at most ``limit`` bytes.
+    """Read a whole file of at most ``limit`` bytes; ``-`` is standard input.
 
     Raises:
-        UsageError: there is no such file, or it may not be read.
+        UsageError: there is no such file, it may not be read, or standard input has nothing (any more).
         DataError: it is larger, or the disk is broken.
     """
     try:
-        with path.open("rb") as file:
-            data = file.read(limit + 1)
+        if str(path) == STANDARD:
+            data = sys.stdin.buffer.read(limit + 1)
+        else:
+            with path.open("rb") as file:
+                data = file.read(limit + 1)
     except (OSError, ValueError) as error:
         raise file_error("read", path, error) from error
+    if not data and str(path) == STANDARD:
+        raise UsageError(
+            "-: standard input is empty", hint="name it once, behind a command that prints something"
+        )
     if len(data) > limit:
         raise DataError(f"{path}: expected at most {limit} bytes, got more", file=str(path))
     return data

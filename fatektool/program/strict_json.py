@@ -9,6 +9,8 @@ from __future__ import annotations
 import json
 from typing import Any
 
+from fatektool.program.plain_text import plain_text
+
 
 def read_json(data: bytes) -> Any:
     """Read a document.
@@ -17,7 +19,7 @@ def read_json(data: bytes) -> Any:
         ValueError: it is none, it is too deep, or it could be read in two ways.
     """
     try:
-        return json.loads(data.decode(), object_pairs_hook=_once_each, parse_constant=_no_number)
+        return json.loads(plain_text(data), object_pairs_hook=_once_each, parse_constant=_no_number)
     except RecursionError as error:
         raise ValueError("too deep") from error
 

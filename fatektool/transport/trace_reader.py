@@ -10,6 +10,7 @@ from datetime import datetime
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import DataError
+from fatektool.program.plain_text import EncodingError, plain_text
 from fatektool.transport.trace import LINK_TYPE, PCAP_MAGIC, PROTOCOL_CODES, RECEIVED, SENT, time_text
 
 if TYPE_CHECKING:
@@ -68,7 +69,7 @@ def _read_ndjson(data: bytes, name: str) -> Iterator[TraceRecord]:
         if not line.strip():
             continue
         try:
-            entry = json.loads(line.decode())
+            entry = json.loads(plain_text(line))
             record = TraceRecord(
                 str(entry["time"]),
                 str(entry["direction"]),
@@ -76,9 +77,8 @@ def _read_ndjson(data: bytes, name: str) -> Iterator[TraceRecord]:
                 str(entry.get("protocol", "")),
             )
         except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-            raise DataError(
-                f"{name}: line {number}: no trace record: {type(error).__name__}", hint=_HINT
-            ) from error
+            said = error if isinstance(error, EncodingError) else type(error).__name__
+            raise DataError(f"{name}: line {number}: no trace record: {said}", hint=_HINT) from error
         if record.direction not in {SENT, RECEIVED}:
             raise DataError(f"{name}: line {number}: expected direction tx or rx", hint=_HINT)
         if not _is_time(record.time):

@@ -58,12 +58,12 @@ FREE = {
     "encode": "--as --error --data --number --protocol --station",
     "decode": "--protocol",
     "modbus map": "--modbus-map",
-    "fleet backup": "--dir --history --single-pass --any-header --on-change --prometheus --on-failure "
+    "fleet backup": "--news --dir --history --single-pass --any-header --on-change --prometheus --on-failure "
     "--select --jobs --deadline",
     "fleet check": "--prometheus --on-failure --select --jobs --deadline",
-    "fleet snapshot": "--dir --keep --prometheus --on-failure --select --jobs --deadline",
-    "fleet status": "--brief --prometheus --on-failure --select --jobs --deadline",
-    "fleet verify": "--on-change --prometheus --on-failure --select --jobs --deadline",
+    "fleet snapshot": "--news --dir --keep --prometheus --on-failure --select --jobs --deadline",
+    "fleet status": "--news --brief --prometheus --on-failure --select --jobs --deadline",
+    "fleet verify": "--news --on-change --prometheus --on-failure --select --jobs --deadline",
     "inventory add": "--tag",
     "inventory list": "--select",
     "history diff": "--report --force --history",

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import resource
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -219,3 +221,106 @@ def test_a_disk_that_is_full_half_way(press: Press, unbuffered: str) -> None:
     assert done.returncode == 5
     assert one_line(done.stderr).startswith("fatektool: standard output cannot be written: File too large")
     assert press.program == OLD
+
+
+# --- standard input, and what the shell makes of > and < ----------------------------------------------------
+
+
+def fed(words: str, data: bytes) -> subprocess.CompletedProcess[bytes]:
+    return subprocess.run(
+        [*COMMAND, *words.split()], input=data, capture_output=True, check=False, env=environment()
+    )
+
+
+def test_a_program_is_read_from_standard_input(press: Press) -> None:
+    """Wherever one is read: ``-`` is standard input. A restore needs ``--yes``, and saves where it stands."""
+    old, new = press.old.read_bytes(), press.new.read_bytes()
+    for word in ("-", "/dev/stdin"):
+        done = fed(f"inspect {word} --raw {len(word)}.bin", old)
+        assert (done.returncode, Path(f"{len(word)}.bin").read_bytes()) == (0, OLD.data)
+        assert fed(f"verify {word} -p {press.target}", old).returncode == 0
+        assert fed(f"diff {word} new.json", old).returncode == 1
+        assert fed(f"diff new.json {word}", new).returncode == 0
+    done = fed(f"restore - -p {press.target}", new)
+    assert (done.returncode, b"add --yes" in done.stderr) == (2, True)
+    assert fed(f"restore - -p {press.target} --yes", new).returncode == 0
+    assert press.program == load_backup(press.new).program
+    (kept,) = Path().glob("stdin.safety-st01-*.json")
+    assert load_backup(kept).program == OLD
+    snapshot = fed(f"snapshot R0 -p {press.target}", b"").stdout
+    assert fed("snapshot diff - -", snapshot).returncode == 2
+    Path("s.json").write_bytes(snapshot)
+    assert fed("snapshot diff - s.json", snapshot).returncode == 0
+    assert fed(f"snapshot apply - -p {press.target} --yes", snapshot).returncode == 0
+
+
+@pytest.mark.parametrize("words", ["inspect -", "diff - -", "snapshot diff - -", "link table check -"])
+def test_standard_input_that_is_empty(words: str) -> None:
+    done = fed(words, b"")
+    assert done.returncode == 2
+    assert b"standard input is empty; name it once" in done.stderr
+
+
+@pytest.mark.skipif(shutil.which("gzip") is None, reason="needs gzip")
+def test_pipes_of_the_shell(press: Press) -> None:
+    """``>(…)`` and ``<(…)`` are files to a command."""
+    target = f"-p {press.target}"
+
+    def bash(command: str) -> subprocess.CompletedProcess[str]:
+        line = command.replace("fatektool", f"{sys.executable} -m fatektool")
+        return subprocess.run(
+            ["bash", "-c", line], capture_output=True, text=True, check=False, env=environment()
+        )
+
+    assert (
+        bash(f"fatektool backup >(gzip > x.gz) {target} && while ! gzip -t x.gz; do :; done").returncode == 0
+    )
+    assert bash("gzip -dc x.gz > x.json").returncode == 0
+    assert load_backup(Path("x.json")).program == OLD
+    assert bash("fatektool inspect <(gzip -dc x.gz)").returncode == 0
+    assert bash(f"fatektool restore <(gzip -dc x.gz) {target} --dry-run").returncode == 0
+    done = bash(f"fatektool snapshot R0 {target} -o /dev/stdout")
+    assert (done.returncode, json.loads(done.stdout)["values"]) == (0, {"R0": 0})
+    done = bash(f"fatektool snapshot R0 {target} -o /dev/stdout --format csv > x.csv")
+    assert (done.returncode, Path("x.csv").read_text()[:5]) == (0, "time,")
+    assert bash(f"fatektool backup /dev/stdout {target} > y.json").returncode == 0
+    assert load_backup(Path("y.json")).program == OLD
+    assert bash(f"fatektool snapshot R0 {target} -o >(cat > z.json); wait; sync").returncode == 0
+
+
+# --- texts as Windows writes them ---
+
+BOM = b"\xef\xbb\xbf"
+READERS = [
+    ("old.json", "inspect {}"),
+    ("s.json", "snapshot diff {} s.json"),
+    ("s.ndjson", "snapshot diff {} s.json"),
+    ("spec.toml", "snapshot --spec {} -p sim:"),
+    ("spec.toml", "watch --spec {} --count 1 -p sim:"),
+    ("t.toml", "link table check {}"),
+    ("fatek.toml", "inventory check --inventory {}"),
+    ("x.ndjson", "decode {}"),
+]
+
+
+@pytest.mark.parametrize(("file", "words"), READERS)
+def test_texts_as_windows_writes_them(press: Press, file: str, words: str) -> None:
+    """A byte order mark is no fault; UTF-16 is one, told in one clear line; so is what is no text."""
+    Path("spec.toml").write_text(SPEC, encoding="utf-8")
+    Path("fatek.toml").write_text('[plc.x]\ntarget = "sim:"\n')
+    Path("t.toml").write_text('kind = "md0"\n[[row]]\n')
+    for words_ in ("snapshot R0 -p sim: -o s.json", "snapshot R0 -p sim: --append s.ndjson"):
+        assert fed(words_, b"").returncode == 0
+    assert fed("status --brief -p sim: --trace x.ndjson", b"").returncode == 0
+    plain = (press.folder / file).read_bytes()
+    as_it_is = fed(words.format(file), b"")
+    for name, data in (("bom-", BOM + plain), ("crlf-", BOM + plain.replace(b"\n", b"\r\n"))):
+        Path(name + file).write_bytes(data)
+        done = fed(words.format(name + file), b"")
+        assert done.returncode == as_it_is.returncode, done
+        assert b"Traceback" not in done.stderr
+    for name, encoding in (("utf-16-", "utf-16"), ("le-", "utf-16-le"), ("be-", "utf-16-be")):
+        Path(name + file).write_bytes(plain.decode().encode(encoding))
+        done = fed(words.format(name + file), b"")
+        assert done.returncode in {1, 2, 5}
+        assert b"text in UTF-16, expected UTF-8: save it as UTF-8" in done.stderr + done.stdout

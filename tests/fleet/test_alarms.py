@@ -272,7 +272,7 @@ def test_a_command_that_hangs_is_not_started_for_ever(
     monkeypatch.setattr("fatektool.cli.alarms.run_command", lambda *_: "hung")
     monkeypatch.setattr("fatektool.cli.alarms.TIME_LIMIT_S", 0.0)
     plant.write(**{f"n{number}": 'target = "tcp://127.0.0.1:1"\n' for number in range(5)})
-    done = cli("fleet", "status", "--on-failure", "x", "-q")
+    done = cli("fleet", "status", "--on-failure", "x", "--news", "-q")
     assert done.err.count(": hung") == 3
     assert done.err.count("x is not started, as it hung 3 times before") == 2
 

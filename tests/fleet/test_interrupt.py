@@ -102,7 +102,7 @@ def test_nothing_of_it_where_nobody_wants_it() -> None:
     with served(OLD) as door:
         tables = f'[plc.press]\ntarget = "{door.target}"\n[plc.nobody]\ntarget = "tcp://127.0.0.1:1"\n'
         Path("fatek.toml").write_text(tables)
-        with Terminal("fleet", "status", "-q", columns=300) as terminal:
+        with Terminal("fleet", "status", "--news", "-q", columns=300) as terminal:
             assert terminal.end() == 1
             (line,) = terminal.raw.splitlines()
             assert line.startswith("nobody  FAILED 3  tcp://127.0.0.1:1: cannot connect")
