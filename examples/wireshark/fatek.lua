@@ -61,7 +61,8 @@ end
 
 -- Protocols and fields ------------------------------------------------------------------------------------
 
-local fatek = Proto("fatek", "FATEK PLC")
+local made, fatek = pcall(Proto, "fatek", "FATEK PLC")
+if not made then return end -- loaded already: from the plugin folder, and once more by -X lua_script
 local facon = Proto("facon", "FATEK FACON") -- the same frames over TCP and UDP
 
 local F = {

@@ -110,6 +110,9 @@ def scan_command(
     A silent station costs the wire time and
     --timeout: a shorter one makes a scan faster, and deaf to slow PLCs. Exit 1 if nobody answers.
     """
+    apart("network", "port", "stations", "station", why="Ethernet modules are asked, and no line")
+    apart("network", "bauds", "baud", "formats", "line_format", "protocols", "protocol")
+    apart("network", "trace", "retries", "lock_wait")
     if network is not None:
         return look_for_modules(voice, network, connection.timeout_s)
     together("station", holds=False, needs="one PLC; a scan asks those of --stations")

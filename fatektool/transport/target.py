@@ -72,6 +72,7 @@ class Target:
         """
         if not text.strip() or "\0" in text:
             raise UsageError("the target is empty", hint=_WAYS)
+        text = _lower_scheme(text)
         if text.startswith("sim:"):
             return cls(text, TargetKind.SIM, path=text.removeprefix("sim:"))
         if text.startswith(("tcp:", "udp:")):
@@ -117,6 +118,12 @@ class Target:
     def on_serial_port(self) -> bool:
         """True if bytes go through a serial port of this computer, or what pyserial takes for one."""
         return self.kind in {TargetKind.SERIAL, TargetKind.MODEM}
+
+
+def _lower_scheme(text: str) -> str:
+    """``TCP://HOST`` is ``tcp://HOST``: a scheme is read in either case, as of any URL."""
+    match = re.match(_SCHEME, text) or re.match(r"(?:sim|modem|tcp|udp):", text, re.IGNORECASE)
+    return text if match is None else match[0].lower() + text[match.end() :]
 
 
 _WAYS: Final = "such as /dev/ttyUSB0, COM3, tcp://192.168.2.3:500, udp://192.168.2.3 or sim:"

@@ -73,8 +73,8 @@ FREE = {
     "history record": "--push --history --lock-wait",
     "history show": "--history",
     "check": "--expect --backup --deadline --prometheus --on-failure",
-    "simulate": "--tcp --udp --pty --model --protocol --station --state --set --scan-ms --fault --replay "
-    "--latency-timer --no-program-commands",
+    "simulate": "--discovery --tcp --udp --pty --model --protocol --station --state --set --scan-ms --fault "
+    "--replay --latency-timer --no-program-commands",
 }
 """What has an effect whatever stands beside it."""
 
@@ -98,6 +98,10 @@ APART = [
     ("loopback -p sim:", "--raw 02,03", "--station 2"),
     ("loopback -p sim:", "--raw 02,03", "--protocol mseries"),
     ("scan -p sim:", "--baud 9600", "--bauds 9600"),
+    ("scan", "--network 127.0.0.1", "--port sim:"),
+    ("scan", "--network 127.0.0.1", "--stations 1-3"),
+    ("scan", "--network 127.0.0.1", "--bauds 9600"),
+    ("scan", "--network 127.0.0.1", "--trace x.pcap"),
     ("scan -p sim:", "--format 7E1", "--formats 7E1"),
     ("scan -p sim:", "--protocol facon", "--protocols facon"),
     ("check -p sim:", "--reference old.json", "--no-reference"),

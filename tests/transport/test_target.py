@@ -170,3 +170,18 @@ def test_line_settings_or_a_usage_error(baud: int, form: str) -> None:
     except UsageError:
         return
     assert 0 < line.byte_time_s < 1
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [
+        ("TCP://plc", "tcp://plc"),
+        ("Udp://PLC:7", "udp://PLC:7"),
+        ("SIM:Plc.state", "sim:Plc.state"),
+        ("Socket://GW:1", "socket://GW:1"),
+        ("MODEM:COM3?number=1", "modem:COM3?number=1"),
+    ],
+)
+def test_a_scheme_in_capitals(written: str, meant: str) -> None:
+    """As in any URL; what stands behind it is left as it is written."""
+    assert Target.parse(written) == Target.parse(meant)

@@ -11,7 +11,7 @@ from fatektool.protocol.explain import Role
 from fatektool.protocol.explainers import EXPLAINERS
 from tests.cli.house import served
 
-from .capture import FACON, INFO, MSERIES, RECEIVED, SENT, capture, traced
+from .capture import FACON, INFO, MSERIES, RECEIVED, SCRIPT, SENT, capture, traced
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -41,6 +41,14 @@ def test_a_backup(tshark: Tshark, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     answers = [packet for packet in packets if packet["fatek.direction"] == "1"]
     assert all(packet["fatek.answer_to"] for packet in answers)
     assert values(packets, "ladder_words")[0] == "13184"
+
+
+def test_a_script_that_is_given_twice(tshark: Tshark) -> None:
+    """As one in the plugin folder that is named on the command line too: loaded once, without a word."""
+    file = capture([traced(FACON, SENT, b"\x020140C7\x03")])
+    once = tshark(file)
+    assert tshark(file, "-X", f"lua_script:{SCRIPT}") == once
+    assert once[0]["fatek.command"] == "0x40"
 
 
 def test_a_line_with_faults(tshark: Tshark, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
