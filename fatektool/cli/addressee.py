@@ -96,10 +96,7 @@ class Origin:
     def warn_unless_from(self, addressee: Addressee, file: object, voice: Voice) -> None:
         """Say that a file came from another PLC than the one that is written to."""
         if self.station != addressee.station or not _same_line(self.target, addressee.target):
-            voice.warn(
-                f"{file} came from station {self.station} on {self.target}, "
-                f"and goes to station {addressee.station} on {addressee.target}"
-            )
+            voice.warn(f"{file} is from station {self.station} on {self.target}, not from this PLC")
 
     def __str__(self) -> str:
         return f"station {self.station} on {self.target}, {self.time}"

@@ -91,6 +91,7 @@ def restore_command(
     ):
         pace = Pace(plc)
         plan = plan_restore(plc, backup, options, progress=bar.update)
+        bar.pause()  # while it is shown, stderr is rich's, which older versions say is no terminal
         here = Addressee(
             plc.target, plc.link.station, model_words(plan.present.plc["system"]), running=plan.running
         )
@@ -159,7 +160,6 @@ class _Question:
             lines, question = [], f"The PLC holds the program on file already. RUN {self.plc}?"
         else:
             return
-        self.bar.pause()  # while it is shown, stderr is rich's, which older versions say is no terminal
         agree(
             self.voice,
             self.rows,

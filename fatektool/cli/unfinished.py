@@ -68,7 +68,7 @@ def warn_of_unfinished(target: str, station: int, voice: Voice) -> None:
         return
     found = _load(path)
     if found is None:
-        voice.warn(f"a restore into this PLC did not complete; its record {path} cannot be read")
+        voice.warn(f"this PLC's restore is unfinished, and its record cannot be read: {path}")
         return
     voice.warn("\n".join(_lines(found)))
 
@@ -82,7 +82,7 @@ def unfinished_document(target: str, station: int) -> dict[str, Any] | None:
 
 def _lines(found: Unfinished) -> list[str]:
     return [
-        "a restore into this PLC did not complete: it must not RUN",
+        "this PLC's restore is unfinished: it must not RUN",
         f"  begun        {found.time}",
         f"  file         {found.file}",
         f"  old program  {found.safety_backup or 'not saved'}",

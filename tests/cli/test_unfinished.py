@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-WARNING = "warning: a restore into this PLC did not complete: it must not RUN"
+WARNING = "warning: this PLC's restore is unfinished: it must not RUN"
 QUICK = ("--timeout", "0.2", "--retries", "0")
 
 
@@ -184,9 +184,7 @@ def test_a_record_that_cannot_be_read_is_a_warning(
         file.write(text)
     done = cli("status", "-p", press.target, "--json")
     assert done.code == 0
-    assert (
-        done.err == f"warning: a restore into this PLC did not complete; its record {path} cannot be read\n"
-    )
+    assert done.err == f"warning: this PLC's restore is unfinished, and its record cannot be read: {path}\n"
     assert done.document("status")["unfinished_restore"] is None
     assert cli("restore", press.new, "-p", press.target, "--yes").code == 0
     assert not os.path.exists(path)  # noqa: PTH110

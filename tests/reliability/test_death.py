@@ -234,7 +234,7 @@ def test_the_power_goes_at_a_page_that_a_restore_writes(
             told_right(details, door, place)
         else:
             warning, *lines, command = done.err.splitlines()
-            assert warning.startswith("warning: new.json came from ")
+            assert warning.startswith("warning: new.json is from station ")
             assert lines[0] == "fatektool: the restore did not complete"
             assert [f"page {write - 1}", "uncertain"] in [re.split(" {2,}", line.strip()) for line in lines]
             assert f"  old program  {safety}" in [line.replace(safety.name, str(safety)) for line in lines]
