@@ -130,6 +130,7 @@ class Attempts:
     def _was_answered(self, request: Request[Any], sent: Sent, frame: Frame) -> None:
         link = self._link
         self._silent = 0
+        link.hearing.answered(frame)
         link.answered.add(request.command)
         if link.echoes is None and not link.codec.echo_may_pass(request):
             beside = bytes(self._heard).replace(frame.raw, b"", 1)

@@ -35,12 +35,16 @@ class Awaited(NamedTuple):
     Attributes:
         sent: the request.
         since: when it and its answer could have crossed the wire: from then on the PLC's time runs.
+        given_s: how long the answer was to be waited for then.
         waited_for: False if nobody waited for its answer.
+        before_s: how long the one took that was taken for its answer, if another comes.
     """
 
     sent: Sent
     since: float
+    given_s: float
     waited_for: bool = True
+    before_s: float = 0.0
 
     def is_answered_by(self, frame: Frame) -> bool:
         """True if the frame may be its answer."""
@@ -79,7 +83,7 @@ class Hearing:
         self._transport = transport
         self._station = station
         self._doubtful: set[int] = set()  # other stations, whose late answers may still come
-        self._answered_at = -inf  # when the last stray answer came
+        self._answered_at = -inf  # when the last one of several answers that were due came
         self._awaited: Awaited | None = None  # the last request
         self._owed: deque[Awaited] = deque(maxlen=_MOST_OWED)  # those without an answer since the last fence
 
@@ -88,14 +92,15 @@ class Hearing:
         """Since when the oldest answer is owed; None if there is none."""
         return self._owed[0].since if self._owed else None
 
-    def expect(self, sent: Sent, wire_s: float) -> None:
+    def expect(self, sent: Sent, wire_s: float, wait_s: float) -> None:
         """A request went out.
 
         Args:
             sent: the request.
             wire_s: of it and its answer.
+            wait_s: how long its answer will be waited for beside that.
         """
-        self._awaited = Awaited(sent, self._transport.clock() + wire_s)
+        self._awaited = Awaited(sent, self._transport.clock() + wire_s, wait_s)
 
     def turn_to(self, station: int) -> bool:
         """Wait for another station's answers from now on; True if an earlier one of it may still come.
@@ -129,9 +134,19 @@ class Hearing:
     def _owe(self, *, waited_for: bool) -> None:
         self.doubt = True
         if self._awaited is not None:
-            sent, since, _ = self._awaited
-            self._owed.append(Awaited(sent._replace(raw=b""), since, waited_for))
+            sent = self._awaited.sent._replace(raw=b"")
+            self._owed.append(self._awaited._replace(sent=sent, waited_for=waited_for))
             self._awaited = None
+
+    def answered(self, frame: Frame) -> None:
+        """An answer was taken. If the like was owed, it may be that one, and this one's still comes."""
+        if not self._owed or self._awaited is None:
+            return
+        for place, owed in enumerate(self._owed):
+            if owed.is_answered_by(frame):
+                self._answered_at = now = self._transport.clock()
+                self._owed[place] = owed._replace(since=self._awaited.since, before_s=now - owed.since)
+                return
 
     def bad_bytes(self, error: FrameError) -> None:
         """Bytes that are no frame."""
@@ -162,13 +177,19 @@ class Hearing:
             else:
                 self._owed.remove(owed)
                 if owed.waited_for:  # it came, but late: this PLC gets more time from now on
-                    self.late_s = max(self.late_s, self._took_s(owed))
+                    self.late_s = max(self.late_s, self._took_s(owed), owed.before_s)
             self._answered_at = self._transport.clock()
         self.on_stray(frame)
 
     def _took_s(self, owed: Awaited) -> float:
-        """How long a PLC took for an answer that has just come: it does one thing after the other."""
-        return self._transport.clock() - max(owed.since, self._answered_at)
+        """How long a PLC took for an answer that has just come.
+
+        It does one thing after the other, so the time counts from its answer before. If that makes less than
+        the answer was waited for, the PLC was not what took the time, but whatever it was counts all the same.
+        """
+        now = self._transport.clock()
+        took_s = now - max(owed.since, self._answered_at)
+        return took_s if took_s > owed.given_s else now - owed.since
 
     def _answer_to_nothing(self, frame: Frame, asked: Sent | None) -> None:
         if asked is not None and (frame.command, frame.number) == (asked.code, asked.number):

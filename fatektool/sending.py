@@ -77,7 +77,7 @@ class Sender:
         if self._quiet_s:
             link.hearing.listen_until(self._quiet_from + self._quiet_s)
         link.transport.write(sent.raw)
-        link.hearing.expect(sent, (len(sent.raw) + sent.size) * link.byte_time_s)
+        link.hearing.expect(sent, (len(sent.raw) + sent.size) * link.byte_time_s, link.wait_s)
 
     def heard_out(self) -> None:
         """The line may be silent from now on."""
