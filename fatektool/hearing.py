@@ -185,7 +185,7 @@ class Hearing:
         """How long a PLC took for an answer that has just come.
 
         It does one thing after the other, so the time counts from its answer before. If that makes less than
-        the answer was waited for, the PLC was not what took the time, but whatever it was counts all the same.
+        the answer was waited for, something else took the time, and counts all the same.
         """
         now = self._transport.clock()
         took_s = now - max(owed.since, self._answered_at)
