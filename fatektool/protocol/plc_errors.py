@@ -39,7 +39,7 @@ _NEXT: Final = {
 PROGRAM_COMMANDS: Final = {Command.READ_PAGE, Command.WRITE_PAGE}
 PROGRAM_REFUSED: Final = (
     "this PLC may not offer its program over the link: the FBs papers list neither 4F nor 50, and a password "
-    "may be set; what stays is the engineer's project file, from the vendor's program"
+    "may be set; what stays is the engineer's project file (.pdw), which 'fatektool listing' reads"
 )
 
 
