@@ -7,6 +7,7 @@ of registers can look like one (D200 is 9041, ORG Y144): a beginning counts if s
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
 from fatektool.ladder.addresses import DRAWING, LAST_BIT, OUTPUTS
@@ -85,8 +86,21 @@ def form_at(words: Sequence[int], place: int) -> Form | None:
     return None
 
 
+@lru_cache(maxsize=8192)
+def _of_one_word(word: int) -> Instruction | None:
+    """A contact, coil or mark; None for the head of what is longer. Most of a program is these."""
+    for mask, forms in _ONE:
+        form = forms.get(word & mask)
+        if form is not None:
+            return None if form.parts else Instruction(form, (word & form.free[0],), ())
+    return None
+
+
 def _instruction(words: Sequence[int], place: int) -> Instruction | None:
     """The instruction that begins here; None if no form is known, or the code ends before it does."""
+    short = _of_one_word(words[place])
+    if short is not None:
+        return short if _has_an_address(short) else None
     form = form_at(words, place)
     if form is None or place + form.head_words + form.operand_words > len(words):
         return None

@@ -124,7 +124,7 @@ class Instruction:
             if found.element is not None:
                 yield Access(found.element, found.spans, use.reads, use.writes, use.goes_on)
 
-    @property
+    @cached_property
     def elements(self) -> tuple[str, ...]:
         """The elements that it names, each once, in the order of their words."""
         return tuple(dict.fromkeys(access.element for access in self.accesses))
