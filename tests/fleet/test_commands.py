@@ -159,7 +159,7 @@ def test_what_lies_in_the_place(cli: Cli, plant: Hall) -> None:
     assert "it is replaced" in done.err
 
 
-@pytest.mark.parametrize("words", ["", "--dir no", "--dir fatek.toml"])
+@pytest.mark.parametrize("words", ["", "--dir fatek.toml"])
 def test_backup_needs_a_folder(cli: Cli, plant: Hall, words: str) -> None:
     assert plant.targets
     done = cli("fleet", "backup", *words.split())
