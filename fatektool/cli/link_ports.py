@@ -14,7 +14,7 @@ from fatektool.cli.options import Connection, connection_options
 from fatektool.cli.output import Voice, table
 from fatektool.cli.read import warn_of
 from fatektool.jobs.link_ports import PortsReport, read_ports
-from fatektool.protocol.link_codes import TRANSACTIONS, meaning, next_step
+from fatektool.protocol.link_codes import NONE_YET, TRANSACTIONS, meaning, next_step
 from fatektool.protocol.link_kinds import TableKind
 from fatektool.protocol.link_settings import DIALLING, PROFILES
 
@@ -76,8 +76,11 @@ def _document(plc: Plc, report: PortsReport) -> dict[str, Any]:
 
 
 def _result_document(result: TransactionResult) -> dict[str, Any]:
-    said = meaning(result.code, _KEEPERS), next_step(result.code, _KEEPERS)
-    return result_document(result, *said)
+    return result_document(result, _meaning(result), next_step(result.code, _KEEPERS))
+
+
+def _meaning(result: TransactionResult) -> str:
+    return NONE_YET if result.none_yet else meaning(result.code, _KEEPERS)
 
 
 def _hex(word: int | None) -> str | None:
@@ -105,8 +108,9 @@ def _port_rows(port: Port) -> list[tuple[str, object]]:
     result = port.last_result
     told = None
     if result is not None:
-        said = meaning(result.code, _KEEPERS)
-        told = f"{result.code:X}, {said} (transaction {result.transaction}, station {result.station})"
+        told = f"{result.code:X}, {_meaning(result)}"
+        if not result.none_yet:
+            told += f" (transaction {result.transaction}, station {result.station})"
     elif port.continuous is False:
         told = "kept for continuous execution alone; else see 'fatektool link result'"
     return [

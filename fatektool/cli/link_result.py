@@ -56,7 +56,12 @@ def result_command(wr: str, connection: Connection, voice: Voice, *, kind: str |
 
 
 def result_document(
-    result: TransactionResult, meaning: str, next_step: str | None, *, alone: bool = False
+    result: TransactionResult,
+    meaning: str,
+    next_step: str | None,
+    *,
+    kind: TableKind | None = None,
+    alone: bool = False,
 ) -> dict[str, Any]:
     """WR+0 and WR+1 as JSON has them; ``alone`` where there is a result code and nothing else."""
     return {
@@ -66,7 +71,7 @@ def result_document(
         "transaction": None if alone else result.transaction,
         "station": None if alone else result.station,
         "command": None if alone else f"{result.command:02X}",
-        "command_meaning": None if alone else result.command_meaning,
+        "command_meaning": None if alone else result.command_meaning(kind),
     }
 
 
@@ -87,7 +92,11 @@ def _document(plc: Plc, start: Element, report: ResultReport, host: LinkHost) ->
         "wr": str(start),
         "kind": None if report.kind is None else report.kind.value,
         "result": result_document(
-            report.state.result, report.meaning, report.next_step, alone=_is_alone(report)
+            report.state.result,
+            report.meaning,
+            report.next_step,
+            kind=report.kind,
+            alone=_is_alone(report),
         ),
         "waiting": operation.waiting,
         "repeated": operation.repeated,
@@ -113,7 +122,7 @@ def _lines(report: ResultReport) -> Iterator[str]:
     if report.next_step is not None:
         rows.append(("do", report.next_step))
     if not _is_alone(report):
-        command = result.command_meaning or "no command of a transaction"
+        command = result.command_meaning(report.kind) or "no command of such a transaction"
         rows += [
             ("transaction", result.transaction),
             ("station", result.station),

@@ -210,7 +210,9 @@ def _carry_out(
 
 def _plan_lines(plan: RestorePlan, kept: str | None) -> Iterator[str]:
     differ = plan.comparison.page_numbers
-    yield f"The PLC's program differs in page {ranges(differ)} ({plan.comparison.word_count} words)."
+    pages = "page" if len(differ) == 1 else "pages"
+    words = "1 word" if plan.comparison.word_count == 1 else f"{plan.comparison.word_count} words"
+    yield f"The PLC's program differs in {pages} {ranges(differ)} ({words})."
     if kept is not None:
         yield f"The old program is saved in {kept}"
     else:

@@ -33,7 +33,7 @@ def _rows(report: StatusReport) -> Iterator[tuple[str, object]]:
     flags = report.flags
     yield "PLC", f"station {report.station} on {report.target}"
     yield "mode", "RUN" if flags.running else "STOP"
-    yield "battery", "LOW: change it, or the program and data are lost" if flags.battery_low else "ok"
+    yield "battery", "LOW: take a backup and a snapshot now, then change it" if flags.battery_low else "ok"
     yield "ladder checksum", "ERROR: restore a good backup" if flags.ladder_checksum_error else "ok"
     yield "watchdog", "TIMED OUT" if flags.watchdog_timeout else "ok"
     yield "emergency stop", "ACTIVE" if flags.emergency_stop else "no"

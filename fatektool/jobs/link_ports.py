@@ -13,7 +13,7 @@ from fatektool.errors import DataError, PlcError, UsageError
 from fatektool.jobs.link_host import LinkHost, read_host
 from fatektool.jobs.registers import named, read_elements
 from fatektool.protocol.elements import Element
-from fatektool.protocol.link_codes import meaning, next_step
+from fatektool.protocol.link_codes import NONE_YET, TRANSACTIONS, meaning, next_step
 from fatektool.protocol.link_kinds import TableKind, misplaced
 from fatektool.protocol.link_ports import PORTS, Port, decode_port, port_elements
 from fatektool.protocol.link_results import WR_WORDS, InstructionState
@@ -100,11 +100,15 @@ class ResultReport:
     @property
     def meaning(self) -> str:
         """The result code in words; every reading of it where the kind is not known."""
+        if self.kind in TRANSACTIONS and self.state.result.none_yet:
+            return NONE_YET
         return meaning(self.state.result.code, self._kinds)
 
     @property
     def next_step(self) -> str | None:
         """What to do about the result code; None where there is nothing to do."""
+        if self.kind in TRANSACTIONS and self.state.result.none_yet:
+            return "see that the instruction has run, and that this is its operand WR"
         return next_step(self.state.result.code, self._kinds)
 
     @property

@@ -44,7 +44,8 @@ def frame(request: Request[Any], station: int = 1, protocol: str = "facon", *, n
     """A request as the frame that goes over the wire.
 
     Args:
-        request: what is asked: a value of ``fatektool.protocol.commands``, or of ``fatektool.parse_command``.
+        request: what is asked: a value of ``fatektool.protocol.commands``, such as the ``request`` of what
+            ``fatektool.parse_command`` returns.
         station: of the PLC; 0 for all of them.
         protocol: a name of ``--protocol``.
         number: of a Modbus TCP request, which its answer repeats; 0 for the others.

@@ -101,6 +101,7 @@ CODES: Final[Mapping[TableKind, Mapping[int, Words]]] = {
 TRANSACTIONS: Final = (TableKind.MD0, TableKind.MBUS)
 """The kinds whose WR+0 and WR+1 name transaction, station and command."""
 UNLISTED: Final = "a code that the paper does not list"
+NONE_YET: Final = "no transaction yet: these words are all 0"
 
 
 def meaning(code: int, kinds: Collection[TableKind]) -> str:

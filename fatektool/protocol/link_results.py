@@ -31,7 +31,7 @@ _BITS: Final = (0, 4, 12, 13, 14)
 _MESSAGE_BITS: Final = (0, 12, 13, 14)
 _BITS_OF: Final = {TableKind.MD1: _MESSAGE_BITS, TableKind.MD2: _MESSAGE_BITS, TableKind.MD3: ()}
 
-WIRE_COMMANDS: Final = {
+_MODBUS_COMMANDS: Final = {
     0x01: "read discrete outputs (0xxxxx)",
     0x02: "read discrete inputs (1xxxxx)",
     0x03: "read holding registers (4xxxxx)",
@@ -40,12 +40,15 @@ WIRE_COMMANDS: Final = {
     0x06: "preset one register",
     0x0F: "force several coils",
     0x10: "preset several registers",
+}
+_FACON_COMMANDS: Final = {
     0x40: "read system status",
     0x44: "read discretes",
     0x45: "write discretes",
     0x46: "read registers",
     0x47: "write registers",
 }
+_COMMANDS_OF: Final = {TableKind.MD0: _FACON_COMMANDS, TableKind.MBUS: _MODBUS_COMMANDS}
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,9 +92,18 @@ class TransactionResult:
         return self.code << 8 | self.transaction, self.station << 8 | self.command
 
     @property
-    def command_meaning(self) -> str | None:
-        """The command in words; None for a code that is no command."""
-        return WIRE_COMMANDS.get(self.command)
+    def none_yet(self) -> bool:
+        """Nothing but zeros: a transaction has a command, also where it goes to all stations."""
+        return self.to_words() == (0, 0)
+
+    def command_meaning(self, kind: TableKind | None = None) -> str | None:
+        """The command in words; None for a code that is no command of this kind of instruction.
+
+        Args:
+            kind: of the instruction; None where it is not known.
+        """
+        commands = _FACON_COMMANDS | _MODBUS_COMMANDS if kind is None else _COMMANDS_OF.get(kind, {})
+        return commands.get(self.command)
 
 
 @dataclass(frozen=True, slots=True)

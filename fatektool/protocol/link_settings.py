@@ -48,8 +48,8 @@ ABNORMAL: Final = {
     0x08: "CRC error",
 }
 ABNORMAL_STEP: Final = (
-    "mend the station, then write 0 to R4058 and R4059 until they stay 0: R4058 shows one abnormal station "
-    "even if there are more"
+    "mend the station, then clear both with 'fatektool write R4058=0 R4059=0', again until they stay 0: "
+    "R4058 shows one abnormal station even if there are more"
 )
 """The paper's procedure for R4058 and R4059 (section 13.1.2, MD3)."""
 UNWATCHED: Final = (

@@ -5,13 +5,13 @@ from __future__ import annotations
 import errno
 from typing import TYPE_CHECKING
 
-from fatektool.errors import LineError, PortBusy, TransportClosed
+from fatektool.errors import FatektoolError, LineError, PortBusy, TransportClosed, UsageError
 
 if TYPE_CHECKING:
     from fatektool.transport.base import LineSettings
 
 
-def open_error(target: str, line: LineSettings, error: Exception) -> LineError:
+def open_error(target: str, line: LineSettings, error: Exception) -> FatektoolError:
     """A target that cannot be opened, in the project's words.
 
     Args:
@@ -39,6 +39,12 @@ def open_error(target: str, line: LineSettings, error: Exception) -> LineError:
         return LineError(
             f"{target}: no right to use the port",
             hint="on Linux join the group that owns it (often dialout) and log in again",
+        )
+    if isinstance(error, ValueError) and text.startswith("invalid URL, protocol"):
+        return UsageError(
+            f"{target}: no such kind of target: {target.partition('://')[0]}://",
+            hint="expected a serial port such as /dev/ttyUSB0 or COM3, tcp://, udp://, rfc2217://, "
+            "socket://, hwgrep://, spy:// or sim:",
         )
     if number in {errno.EINVAL, errno.ENOTTY} or isinstance(error, ValueError):
         return LineError(

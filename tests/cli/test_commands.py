@@ -119,7 +119,7 @@ def test_a_restore_keeps_the_old_program_beside_the_file(press: Press, cli: Cli)
     assert done.err.splitlines()[:5] == facts
     assert done.err.splitlines()[5].startswith("time   ")
     assert done.err.splitlines()[6:] == [
-        "The PLC's program differs in page 1-7 (448 words).",
+        "The PLC's program differs in pages 1-7 (448 words).",
         f"The old program is saved in {safety}",
         "8 of 8 pages will be written, then all read back.",
     ]
@@ -135,7 +135,7 @@ def test_a_dry_run_tells_what_would_be_done(press: Press, cli: Cli) -> None:
     facts = done.out.splitlines()[:6]
     assert [line.split()[0] for line in facts] == ["PLC", "model", "mode", "file", "from", "time"]
     assert done.out.splitlines()[6:] == [
-        "The PLC's program differs in page 1-7 (448 words).",
+        "The PLC's program differs in pages 1-7 (448 words).",
         "The old program is saved in a safety backup before the first page is written",
         "The PLC is in RUN and will be stopped.",
         "7 of 8 pages will be written, then all read back.",
@@ -199,7 +199,7 @@ def test_status_in_words(press: Press, cli: Cli) -> None:
     out = cli("status", "-p", press.target).out
     for line in (
         "mode              STOP",
-        "battery           LOW: change it, or the program and data are lost",
+        "battery           LOW: take a backup and a snapshot now, then change it",
         "emergency stop    ACTIVE",
         "ROM pack          in use: the program cannot be written",
         "ladder size       400 words",

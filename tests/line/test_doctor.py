@@ -77,7 +77,7 @@ def test_the_high_speed_link_of_an_fbs() -> None:
     assert finding.evidence == (
         "R4058 = 5, R4059 = 0A11H (17 abnormal answers, the last: no answer from the slave)"
     )
-    assert "write 0 to R4058 and R4059 until they stay 0" in finding.advice
+    assert "clear both with 'fatektool write R4058=0 R4059=0', again until they stay 0" in finding.advice
     bench.plc.write_registers(Element("R", 4058), [0, 3])
     (finding,) = examine(bench.plc).findings
     assert (finding.rule, finding.fault) == ("high-speed-link", False)

@@ -144,8 +144,33 @@ def test_the_modem() -> None:
 def test_wr() -> None:
     state = InstructionState.parse([0x0B03, 0x0210, 0, 0, 0x6011, 0, 0, 0])
     assert state.result == TransactionResult(0xB, 3, 2, 0x10)
-    assert state.result.command_meaning == "preset several registers"
+    assert state.result.command_meaning() == "preset several registers"
     assert state.operation == Operation(waiting=True, repeated=True, active=False, error=True, done=True)
+
+
+@pytest.mark.parametrize(
+    ("command", "kind", "words"),
+    [
+        (0x10, TableKind.MBUS, "preset several registers"),
+        (0x10, TableKind.MD0, None),
+        (0x46, TableKind.MD0, "read registers"),
+        (0x46, TableKind.MBUS, None),
+        (0x46, None, "read registers"),
+        (0x46, TableKind.MD1, None),
+        (0x00, None, None),
+    ],
+)
+def test_a_command_is_told_in_the_words_of_its_kind(
+    command: int, kind: TableKind | None, words: str | None
+) -> None:
+    assert TransactionResult(0, 0, 2, command).command_meaning(kind) == words
+
+
+def test_zeros_are_no_transaction() -> None:
+    """One to all stations has station 0, and a command all the same."""
+    assert TransactionResult.parse(0, 0).none_yet
+    assert not TransactionResult.parse(0, 0x0045).none_yet
+    assert not TransactionResult.parse(1, 0).none_yet
 
 
 @pytest.mark.parametrize(

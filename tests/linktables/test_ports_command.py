@@ -73,9 +73,22 @@ def test_result(fbs: Plant) -> None:
     assert "outputs      ERR DN" in done.out.splitlines()
     assert fbs.cli("link", "result", "D100", "--check").code == 1
     assert fbs.cli("link", "result", "D200", "--check").code == 0
+    foreign = fbs.cli("link", "result", "D100", "--kind", "mbus").out
+    assert "command      46H, no command of such a transaction" in foreign.splitlines()
     unnamed = fbs.cli("link", "result", "D100").out
     assert "md2: this PLC's own ladder program did not give its reply" in unnamed
     assert "--kind says which of these readings holds" in unnamed
+
+
+def test_zeros_are_not_told_as_success(fbs: Plant) -> None:
+    """Registers that no instruction has written yet, or that are no WR at all."""
+    result = fbs.json("link-result", "link", "result", "D100", "--kind", "md0")["result"]
+    assert (result["code"], result["meaning"]) == ("0", "no transaction yet: these words are all 0")
+    assert "operand WR" in result["next_step"]
+    fbs.write("D4044=0x5602")
+    assert "  last result      0, no transaction yet: these words are all 0" in (
+        fbs.cli("link", "ports").out.splitlines()
+    )
 
 
 def test_result_of_a_message(fbs: Plant) -> None:
@@ -108,7 +121,7 @@ def test_result_of_the_high_speed_link(fbs: Plant) -> None:
         "abnormal answers  17, no answer from the slave (R4059)",
     ):
         assert line in done.out.splitlines()
-    assert "write 0 to R4058 and R4059 until they stay 0" in done.out
+    assert "clear both with 'fatektool write R4058=0 R4059=0', again until they stay 0" in done.out
     assert not [line for line in done.out.splitlines() if line.startswith(("outputs", "port", "run"))]
     assert fbs.cli(*ask).code == 0
     fbs.write("R4058=0", "R4059=1")

@@ -106,7 +106,6 @@ def test_no_right_to_the_port(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "target",
     [
-        "foo://bar",
         "socket://127.0.0.1",
         "socket://",
         "rfc2217://",
@@ -120,6 +119,13 @@ def test_no_right_to_the_port(tmp_path: Path) -> None:
 )
 def test_an_url_that_pyserial_does_not_know(target: str) -> None:
     assert refusal(target).message.startswith(target)
+
+
+def test_a_scheme_that_nobody_knows() -> None:
+    """A slip of the pen is no fault of the line."""
+    with ExitStack() as stack, pytest.raises(UsageError, match="no such kind of target") as caught:
+        opened("tpc://192.168.2.3", stack)
+    assert "tcp://" in str(caught.value.hint)
 
 
 @needs_pty
