@@ -78,7 +78,8 @@ def test_a_wrong_order(cli: Cli, plant: Hall, words: str) -> None:
 def test_a_plc_that_hangs_is_given_up(cli: Cli, plant: Hall) -> None:
     with deaf_door() as target:
         plant.write(
-            deaf=f'target = "{target}"\nretries = 1000\n', behind=f'target = "{target}"\nstation = 2\n'
+            deaf=f'target = "{target}"\ntimeout_s = 0.1\nretries = 1000\n',
+            behind=f'target = "{target}"\ntimeout_s = 0.1\nstation = 2\n',
         )
         done = cli("fleet", "status", "--deadline", "5", "--json")
     found = plcs_of(done.document("fleet"))
