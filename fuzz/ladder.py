@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 
+from fatektool.ladder.cross_reference import CrossReference
 from fatektool.ladder.networks import Code
 
 
@@ -16,3 +17,5 @@ def one_input(data: bytes) -> None:
         assert instruction.text.isprintable()
         assert instruction.known or instruction.text.startswith("?? ")
         list(instruction.accesses)
+    for finding in CrossReference(code).findings():
+        assert finding.where

@@ -20,6 +20,7 @@ from fatektool.cli.program_files import (
 from fatektool.cli.report import report_option, write_report
 from fatektool.errors import UsageError
 from fatektool.jobs.times import utc
+from fatektool.project.comments import text_in
 from fatektool.project.program_file import NO_COMMENTS
 
 if TYPE_CHECKING:
@@ -122,13 +123,13 @@ def listing_document(found: ProgramFile, networks: Sequence[Network], comments: 
     return {
         "schema": "fatektool.listing/1",
         "file": found.name,
-        "header": found.header.document(),
+        "header": found.header_document,
         "unknown_words": found.require_code().unknown_words,
         "networks": [
             {
                 "number": network.number,
                 "unit": UNITS[network.unit],
-                "comment": comments.networks.get(2 * network.place),
+                "comment": text_in(network.addresses, comments.networks),
                 "instructions": [
                     _instruction_document(number, word, instruction)
                     for number, word, instruction in network.places
@@ -155,10 +156,10 @@ def _instruction_document(number: int, word: int, instruction: Instruction) -> d
 def listing_lines(networks: Sequence[Network], comments: Comments, *, words: bool) -> Iterator[str]:
     """The listing for people: a heading a network, a line an instruction."""
     for network in networks:
-        unit = comments.units.get(2 * network.place)
+        unit = text_in(network.addresses, comments.units)
         if unit:
             yield f"unit {unit}"
-        yield f"{network.name}  {comments.networks.get(2 * network.place, '')}".rstrip()
+        yield f"{network.name}  {text_in(network.addresses, comments.networks) or ''}".rstrip()
         yield from _instruction_lines(network, comments.elements, words=words)
 
 

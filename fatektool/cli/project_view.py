@@ -32,7 +32,7 @@ def project_document(found: ProgramFile) -> dict[str, Any]:
             "networks_commented": len(comments.networks),
             "units": [{"name": name, "address": place} for place, name in comments.units.items()],
         },
-        "header": found.header.document(),
+        "header": found.header_document,
         "page_count": found.page_count,
         "sha256": found.sha256,
         "networks": None if code is None else len(code.networks),

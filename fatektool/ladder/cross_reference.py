@@ -180,7 +180,7 @@ def _is_system(spans: Iterable[Span]) -> bool:
 def _indexed_symbols(code: Code) -> set[str]:
     """The kinds of registers that an operand behind a pointer may be: ``R0V``, ``D0[P2+P0]?``."""
     texts = (operand.text for instruction in code.instructions for operand in instruction.operands)
-    return {text[0] for text in texts if text[0] in "RD" and (text.endswith("V") or "[" in text)}
+    return {text[0] for text in texts if text.startswith(("R", "D")) and (text.endswith("V") or "[" in text)}
 
 
 def _accesses(code: Code) -> Iterator[_Access]:

@@ -44,10 +44,15 @@ class Network:
         """``N0000``."""
         return f"N{self.number:04}"
 
+    @property
+    def addresses(self) -> range:
+        """The byte addresses of the image that it takes, as a project names them."""
+        return range(2 * self.place, 2 * (self.place + len(self.words)))
+
     @cached_property
     def words(self) -> tuple[int, ...]:
         """Its words in order."""
-        return sum((instruction.words for instruction in self.instructions), ())
+        return tuple(word for instruction in self.instructions for word in instruction.words)
 
     @property
     def places(self) -> Iterator[tuple[int, int, Instruction]]:

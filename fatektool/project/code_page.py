@@ -28,6 +28,9 @@ _SIGNS: Final = "°²³µ±×÷§·–—…‘’“”€"  # noqa: RUF001  # 
 _RARE: Final = "œŒìû"
 _TURKISH: Final = "ğıİşŞĞ"
 _ASCII: Final = 0x80
+_LOOKED_AT: Final = 1000
+_LONGEST: Final = 200
+"""How many texts, and how much of each, are enough to tell by what they look like; all must decode."""
 
 
 class Choice(NamedTuple):
@@ -56,10 +59,11 @@ def code_page(name: str) -> str:
 def choose(texts: Sequence[bytes]) -> Choice:
     """The code page of these texts."""
     found = []
+    telling = [text for text in texts if not text.isascii()][:_LOOKED_AT]
     for name in (*SINGLE, *DOUBLE):
-        decoded = _all(texts, name)
-        if decoded is not None:
-            found.append((name, sum(_likeness(text, name) for text in decoded)))
+        if _all(texts, name) is not None:
+            looked_at = _all(telling, name) or []
+            found.append((name, sum(_likeness(text[:_LONGEST], name) for text in looked_at)))
     if not found:
         return Choice(LAST_RESORT, sure=False)
     return Choice(max(found, key=lambda each: each[1])[0], sure=True)

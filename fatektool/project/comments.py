@@ -107,6 +107,14 @@ def comments_of(records: Sequence[Record], encoding: str | None = None) -> Comme
     )
 
 
+def text_in(addresses: range, texts: Mapping[int, str]) -> str | None:
+    """The text of a network or a unit that begins among these byte addresses; None if there is none."""
+    found = texts.get(addresses.start)
+    if found is None:
+        found = next((text for address, text in texts.items() if address in addresses), None)
+    return found
+
+
 def comment_of(element: str, comments: Mapping[str, str]) -> str | None:
     """The comment of an element: its own, or that of the register or timer that it is a part or a pair of.
 

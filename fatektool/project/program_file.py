@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.errors import DataError
 from fatektool.ladder.image import code_of, fbe_code
@@ -72,6 +72,12 @@ class ProgramFile:
     def header(self) -> Header:
         """What the image's first pages say."""
         return self.program.header
+
+    @property
+    def header_document(self) -> dict[str, Any]:
+        """The header as JSON has it. Of an FBE's project no header is known, and so no ladder size."""
+        document = self.header.document()
+        return document if self.project is None or document["family"] else {**document, "ladder_words": None}
 
     @property
     def sha256(self) -> str:

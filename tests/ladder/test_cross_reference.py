@@ -57,5 +57,9 @@ def test_a_register_behind_a_pointer_may_be_any() -> None:
     assert odd(write + read_by_pointer) == [("never-read", "D0")]
 
 
+def test_a_label_without_characters() -> None:
+    assert odd([0x00EF, 0, 0, 0, 0x0040, 0x00C1]) == []
+
+
 def test_elements_are_in_order() -> None:
     assert reference(CODE).elements[:4] == ["M0", "M16", "M32", "M1920"]

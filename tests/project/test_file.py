@@ -145,14 +145,20 @@ def test_records_without_the_two_bytes_behind() -> None:
     assert found.memory.other is None
 
 
-def test_an_fbe_project() -> None:
+def fbe_image() -> bytes:
     words = [0xFFFF] * 16384
     words[0x1400 : 0x1400 + 10] = [*CODE, 0xACF5, 0xFFFF, 0x000A, 0xFFFF, 0x0040, 0x01C1]
     words[0x33FE] = 0xAA55
-    image = struct.pack("<16384H", *words)
-    data = head() + record(0x1800, enciphered(image, key_of(1))) + b"\xff\xff\0\0"
-    found = Project.parse(data)
-    assert found.memory.image == image
+    return struct.pack("<16384H", *words)
+
+
+FBE = head(b"FBE-40MA") + record(0x1800, enciphered(fbe_image(), key_of(1))) + b"\xff\xff\0\0"
+
+
+def test_an_fbe_project() -> None:
+    found = Project.parse(FBE)
+    assert found.model == "FBE-40MA"
+    assert found.memory.image == fbe_image()
     code = fbe_code(found.memory.image)
     assert [each.text for each in code.instructions][4:] == ["~FUN 08 MOV S:FFFFH D:R0", "ORG X0", "OUT Y1"]
     assert [2 * network.place for network in code.networks] == [0x2800, 0x2810]

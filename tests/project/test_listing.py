@@ -14,6 +14,7 @@ from fatektool.program.headers.header import FACON
 from tests.program.samples import backup, program
 from tests.project.files import ELEMENTS, IMAGE, MAIN, SUB, backup_file, project_file
 from tests.project.images import B1, CODE, image_of
+from tests.project.test_file import FBE
 
 if TYPE_CHECKING:
     from tests.cli.house import Cli
@@ -168,6 +169,29 @@ def test_a_small_model(cli: Cli) -> None:
     done = cli("listing", "press.pdw", "--json").document("listing")
     assert done["header"]["signature"] == "FBS40110"
     assert {done["header"]["sums"][name]["valid"] for name in ("settings", "labels", "ror")} == {True}
+
+
+def test_an_fbe(cli: Cli) -> None:
+    Path("fbe.pdw").write_bytes(FBE)
+    done = cli("listing", "fbe.pdw")
+    assert done.out.splitlines()[5:] == [
+        "  0004  ~FUN 08 MOV S:FFFFH D:R0",
+        "N0001",
+        "  0005  ORG X0",
+        "  0006  OUT Y1",
+    ]
+    document = cli("listing", "fbe.pdw", "--json").document("listing")
+    assert (document["header"]["family"], document["header"]["ladder_words"]) == (None, None)
+    assert "header    none known (FBE)" in cli("inspect", "fbe.pdw").out
+    assert cli("inspect", "fbe.pdw", "--json").document("inspect")["networks"] == 2
+    assert cli("diff", "fbe.pdw", "fbe.pdw").out == "same: 256 pages, same code\n"
+    assert cli("xref", "fbe.pdw", "X0").code == 0
+
+
+def test_a_comment_within_a_network_is_its_own(cli: Cli) -> None:
+    project_file("press.pdw", IMAGE, networks={0x0200: b"First", 0x0204: b"also first", 0x020A: b"Second"})
+    lines = cli("listing", "press.pdw").out.splitlines()
+    assert [line for line in lines if line.startswith("N000")][:2] == ["N0000  First", "N0001  Second"]
 
 
 def test_a_page_to_look_at(cli: Cli) -> None:
