@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 from fatektool.attempt import Attempts
 from fatektool.errors import (
+    DeadlinePassed,
     FrameError,
     GatewayTimeout,
     LineError,
@@ -296,7 +297,7 @@ class Link:
         self, request: Request[A], failure: LineError | None, account: Account, *, unknown: bool = False
     ) -> LineError:
         """The error for a request that found no answer to trust: see ``silence.Silence``."""
-        if isinstance(failure, TransportClosed):
+        if isinstance(failure, TransportClosed | DeadlinePassed):
             return failure
         if not account.alive:
             self._listen_for_late()

@@ -80,7 +80,8 @@ class Silence:
         """The error that says so."""
         link = self.link
         asked = f"{_named(self.request)}"
-        if not self.account.tries:  # what had to be known before was not learnt
+        before = link.codec.probe.command
+        if not self.account.tries and before != self.request.command:  # what had to be known was not learnt
             asked = f"{_named(link.codec.probe)}, which goes before {_named(self.request)}"
         told = self._heard()
         if self.unknown:

@@ -89,7 +89,8 @@ def test_a_plc_that_hangs_is_given_up(cli: Cli, plant: Hall) -> None:
     assert told["kind"] == "deadline_passed"
     assert told["message"].startswith("given up, its limit of 5 s is over")
     assert found["deaf"]["duration_s"] >= 5
-    assert found["behind"]["document"]["error"]["kind"] == "no_answer"  # asked after it, on its own
+    behind = found["behind"]["document"]["error"]["kind"]  # asked after it, with a limit of its own
+    assert behind in {"no_answer", "deadline_passed"}  # whichever of its two limits is noticed first
 
 
 # --- backup ------------------------------------------------------------------------------------------------
