@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 _LD: Final = 0x60
 _END: Final = 0xFFFF
+_LABEL: Final = 0xEF
+"""The low byte of a label; below it stand instructions of one word, with a prefix two, above it functions."""
 
 
 def _index(head_words: int) -> list[tuple[tuple[int, ...], dict[tuple[int, ...], Form]]]:
@@ -128,7 +130,7 @@ def _unknown(words: Sequence[int], place: int) -> Instruction:
     if form is not None:  # an address that is none, or cut short
         contact = form.shape is Shape.CONTACT
         return unknown(tuple(words[place : place + form.head_words] if contact else words[place:]))
-    if words[place] & 0xF0 < 0xE0 or words[place] == 0x00E0:  # an op that none has, an edge of nothing
+    if words[place] & 0xFF < _LABEL:  # contacts, edges, marks: all that is known below labels and functions
         return unknown((words[place],))
     end = place + 1
     while end < len(words) and not _begins(words, end):
@@ -144,5 +146,7 @@ def _begins(words: Sequence[int], place: int) -> bool:
     if first.form.shape is not Shape.CONTACT or first.bit in DRAWING:
         return True
     behind = place + len(first.words)
-    second = _instruction(words, behind) if behind < len(words) else None
-    return second is not None and not second.form.begins and second.bit not in OUTPUTS
+    if behind == len(words):
+        return False
+    second = _instruction(words, behind)
+    return second is None or (not second.form.begins and second.bit not in OUTPUTS)

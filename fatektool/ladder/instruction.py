@@ -134,7 +134,7 @@ class Instruction:
         name = self.form.text
         if self.bit in DRAWING:
             what = "OPEN" if " NOT" in name or " TD" in name else "SHORT"
-            return f"{name.partition(' ')[0]} {what}"
+            return name.replace(" NOT", "").format(bit=what)
         if self.bit in OUTPUTS:
             return f"FO {self.bit - OUTPUTS.start}"
         found = bit_name(self.bit)

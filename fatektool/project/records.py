@@ -29,7 +29,8 @@ LARGEST_FILE: Final = 8 << 20
 _MODEL: Final = slice(0xA0, 0x100)
 _END: Final = 0xFFFF
 _MOST_RECORDS: Final = 200_000
-_SUMMED: Final = frozenset({0x1001, 0x1002, 0x1003, 0x1004, 0x1006})
+_SUMMED: Final = frozenset({0x1001, 0x1002, 0x1003, 0x1006})
+"""Those of them that are read: what nobody reads may be as it is."""
 _BARE: Final = 0x180A
 
 

@@ -57,7 +57,11 @@ def test_there_are_enough_vectors() -> None:
         # D200 and D201 look like ORG Y144 and ORG Y146, which nothing could follow.
         ((0x3FF4, 0x9041, 0x9241, 0x0040, 0x00C1), "?? 3FF4 9041 9241|ORG X0|OUT Y0"),
         ((0x3FF4, 0x9041, 0xFC6F, 0x00C1, 0xEB5F), "?? 3FF4 9041 FC6F 00C1|ORG OPEN"),
+        ((0x3FF4, 0x1234, 0x0040, 0x3FF4, 0x0040, 0x00C1), "?? 3FF4 1234|ORG X0|?? 3FF4|ORG X0|OUT Y0"),
+        ((0x84EE, 0x00C1), "?? 84EE|OUT Y0"),
         ((0x81EE, 0x0040), "|ORG X0"),
+        ((0x00E0, 0xE68F, 0x00E0, 0xE69F), "~AND TU SHORT|~AND TD OPEN"),
+        ((0xE6CF, 0xE6DF), "OUT SHORT|~OUT OPEN"),
         ((0x80FC, 0x100A, 0x0060), "~@6000 .01 R8"),
         ((0xACF5, 0xFF7F, 0x000A), "FUN 08 MOV S:32767 D:R0"),
         ((0xACF5, 0x5AA5, 0x000A), "~FUN 08 MOV S:A55AH D:R0"),
