@@ -69,6 +69,7 @@ class Attempts:
             LineReadOnly: it writes, and the line may only be read.
         """
         link = self._link
+        self._renew_if_silent()
         sent = link.prepare(request)
         link.hearing.words = ""
         link.counters.exchanges += 1
@@ -85,9 +86,6 @@ class Attempts:
             link.hearing.lost()
             if not link.hearing.words and not link.hearing.late_s:
                 self._silent += 1
-                if self._silent >= _SILENT_TRIES_BEFORE_RENEWAL:
-                    self._silent = 0
-                    link.transport.renew()
             raise
         except (PlcRefused, PlcBusy):
             raise
@@ -96,6 +94,12 @@ class Attempts:
             raise
         finally:
             link.sender.heard_out()
+
+    def _renew_if_silent(self) -> None:
+        """Connect anew after a long silence: now, not before, as a late answer is listened for until then."""
+        if self._silent >= _SILENT_TRIES_BEFORE_RENEWAL:
+            self._silent = 0
+            self._link.transport.renew()
 
     def _await(self, request: Request[A], sent: Sent) -> A:
         link = self._link

@@ -10,6 +10,7 @@ class Counters:
     """What was seen on the line so far."""
 
     exchanges: int = 0
+    writes: int = 0  # requests that write, sent or about to be
     timeouts: int = 0
     checksum_errors: int = 0
     garbled: int = 0

@@ -265,6 +265,7 @@ class Link:
         if self.read_only:
             self.require_leave(request)
         self.fences.note_asked(request)
+        self.counters.writes += request.writes
         return self.sender.prepare(request)
 
     @property

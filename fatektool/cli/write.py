@@ -53,8 +53,9 @@ def write_command(
         try:
             failed = write_elements(plc, [(item.element, raw) for item, raw in pairs])
         except (LineError, PlcBusy) as error:
-            left = f"some of the {len(pairs)} values may be written: read them, or write them again"
-            error.hint = f"{error.hint}; {left}" if error.hint else left
+            if plc.link.counters.writes:
+                left = _left(len(pairs))
+                error.hint = f"{error.hint}; {left}" if error.hint else left
             raise
         not_taken = [
             {
@@ -79,6 +80,13 @@ def write_command(
     told = {by_element[each.element].key: _told(by_element[each.element], each) for each in failed}
     warn_of(told, voice)
     return PlcError.exit_code if failed else 0
+
+
+def _left(count: int) -> str:
+    """What is to be known of the values when the line failed after the first was sent."""
+    if count == 1:
+        return "the value may be written: read it, or write it again"
+    return f"some of the {count} values may be written: read them, or write them again"
 
 
 def _told(item: Item, each: NotTaken) -> str:

@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
 from fatektool.errors import FatektoolError, NoAnswer, PlcRefused, TransportClosed, UsageError
 from fatektool.link import Link
-from fatektool.protocol.commands import Loopback, ReadBriefStatus, ReadPage, ReadRegisters, RunStop
+from fatektool.protocol.commands import (
+    Loopback,
+    ReadBriefStatus,
+    ReadPage,
+    ReadRegisters,
+    Request,
+    RunStop,
+    WriteRegisters,
+)
 from fatektool.protocol.elements import Element
 from fatektool.protocol.facon import FACON
 from fatektool.transport.base import LineSettings
@@ -262,6 +272,37 @@ def test_a_connection_is_renewed_after_two_silences() -> None:
         link.ask(R0)
     assert transport.renewed == 2
     assert transport.written == 5
+
+
+class Renewed(MemoryTransport):
+    """A connection that is closed when it is renewed, and open again from the next write on, as of TCP."""
+
+    closed = False
+
+    def write(self, data: bytes) -> None:
+        self.closed = False
+        super().write(data)
+
+    def read(self, max_bytes: int, timeout_s: float) -> bytes:
+        if self.closed:
+            raise TransportClosed("the connection is closed")
+        return super().read(max_bytes, timeout_s)
+
+    def renew(self) -> None:
+        self.closed = True
+
+
+@pytest.mark.parametrize("retries", range(4))
+@pytest.mark.parametrize("doubt", [False, True])
+@pytest.mark.parametrize("writes", [False, True])
+def test_a_silence_whose_last_try_was_due_for_a_new_connection(
+    retries: int, *, doubt: bool, writes: bool
+) -> None:
+    link = Link(Renewed(Rules(dead=True)), FACON, 1, LineSettings(), retries=retries)
+    link.hearing.doubt = doubt
+    request: Request[Any] = WriteRegisters(Element("R", 0), (7,)) if writes else R0
+    with pytest.raises(NoAnswer, match="nothing heard"):
+        link.ask(request)
 
 
 def test_garbage_is_no_reason_to_renew() -> None:

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from fatektool.link import Link
+
 from .plant import cut_after, error_of, recorded
 
 if TYPE_CHECKING:
@@ -119,6 +121,26 @@ def test_a_line_that_dies_while_writing(plant: Plant, monkeypatch: pytest.Monkey
     assert "some of the 200 values may be written" in line
     assert plant.register(0) == 7
     assert plant.register(199) == 0
+
+
+def test_a_line_that_is_dead_from_the_first_request(plant: Plant, monkeypatch: pytest.MonkeyPatch) -> None:
+    cut_after(monkeypatch, 0)
+    assert "the value may be written" in error_of(plant.cli("write", "R0=7"), 3)
+
+
+def test_a_line_that_dies_before_the_first_write(plant: Plant, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An answer was still owed to the process before, so a fence goes first, and finds nobody."""
+    cut_after(monkeypatch, 0)
+    begin = Link.begin_with_echo
+
+    def with_a_doubt(link: Link) -> None:
+        begin(link)
+        link.hearing.doubt = True
+
+    monkeypatch.setattr(Link, "begin_with_echo", with_a_doubt)
+    line = error_of(plant.cli("write", "R0=7"), 3)
+    assert "nothing was written" in line
+    assert "may be written" not in line
 
 
 def test_nan_and_refused_are_null_with_an_error(plant: Plant) -> None:
