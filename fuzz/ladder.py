@@ -5,6 +5,7 @@ from __future__ import annotations
 import struct
 
 from fatektool.ladder.cross_reference import CrossReference
+from fatektool.ladder.decode import encode
 from fatektool.ladder.networks import Code
 
 
@@ -12,7 +13,7 @@ def one_input(data: bytes) -> None:
     """Decode; the instructions' words in order are the words, and each has a text."""
     words = struct.unpack(f">{len(data) // 2}H", data[: len(data) // 2 * 2])
     code = Code.of(words)
-    assert code.words == words
+    assert encode(code.instructions) == code.words == words
     for instruction in code.instructions:
         assert instruction.text.isprintable()
         assert instruction.known or instruction.text.startswith("?? ")

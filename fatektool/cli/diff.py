@@ -11,6 +11,7 @@ from fatektool.cli.documents import program_differences
 from fatektool.cli.options import PATH, voice_options
 from fatektool.cli.program_files import comments_from, comments_options, program_file, require_comments
 from fatektool.cli.report import report_option, write_report
+from fatektool.errors import UsageError
 from fatektool.jobs.times import utc
 
 if TYPE_CHECKING:
@@ -19,6 +20,9 @@ if TYPE_CHECKING:
 
     from fatektool.cli.output import Voice
     from fatektool.project.comparison import ProgramComparison
+
+
+STDIN = "-"
 
 
 @click.command("diff", epilog="Example: fatektool diff monday.json tuesday.json")
@@ -36,6 +40,8 @@ def diff_command(
     """
     from fatektool.project.comparison import compare_files
 
+    if str(a) == str(b) == STDIN:
+        raise UsageError("standard input holds one program: expected - for one of the two")
     one, other = program_file(a, voice, encoding), program_file(b, voice, encoding)
     require_comments(comments, one, other)
     named = comments_from(comments, voice, encoding)

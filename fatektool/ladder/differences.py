@@ -78,6 +78,8 @@ class NetworkChange:
 
 def compare_code(a: Code, b: Code) -> tuple[NetworkChange, ...]:
     """The networks that differ, in the order of the programs; empty for the same code."""
+    if a.units == b.units:
+        return ()
     found: list[NetworkChange] = []
     keys = [[(network.unit, network.words) for network in code.networks] for code in (a, b)]
     for block in align(*keys):

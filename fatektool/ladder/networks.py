@@ -65,23 +65,25 @@ class Network:
 
 @dataclass(frozen=True)
 class Code:
-    """A program's code.
+    """A program's code; what it says is read when it is asked for.
 
     Attributes:
-        networks: all of them, of the main unit, then of the sub unit.
+        units: the words of the main unit, and those of the sub unit.
+        places: where each begins in the image, in words.
     """
 
-    networks: tuple[Network, ...]
+    units: tuple[tuple[int, ...], ...]
+    places: tuple[int, ...]
 
     @classmethod
     def of(cls, *units: Sequence[int], places: Sequence[int] = (0, 0)) -> Code:
-        """Read code.
+        """Code from words."""
+        return cls(tuple(map(tuple, units)), tuple(places))
 
-        Args:
-            units: the words of the main unit, and those of the sub unit.
-            places: where each begins in the image, in words.
-        """
-        return cls(tuple(_networks(units, places)))
+    @cached_property
+    def networks(self) -> tuple[Network, ...]:
+        """All networks, of the main unit, then of the sub unit."""
+        return tuple(_networks(self.units, self.places))
 
     @property
     def instructions(self) -> tuple[Instruction, ...]:
@@ -91,7 +93,7 @@ class Code:
     @cached_property
     def words(self) -> tuple[int, ...]:
         """All words in order, without the end mark between the units."""
-        return tuple(word for network in self.networks for word in network.words)
+        return tuple(word for unit in self.units for word in unit)
 
     @property
     def unknown_words(self) -> int:

@@ -29,7 +29,7 @@ def test_what_is_read_from_use(vector: Vector) -> None:
 def test_all_of_them_in_a_row() -> None:
     words = [word for vector in PRINTED for word in vector.words]
     assert [found.text for found in decode(words)] == [vector.text for vector in PRINTED]
-    assert Code.of(words).words == tuple(words)
+    assert encode(Code.of(words).instructions) == tuple(words)
 
 
 def test_no_word_is_the_head_of_two_forms() -> None:

@@ -66,6 +66,7 @@ def test_words_come_back(words: tuple[int, ...] | list[int]) -> None:
 def test_networks_hold_every_word(main: tuple[int, ...], sub: tuple[int, ...]) -> None:
     code = Code.of(main, sub)
     assert code.words == main + sub
+    assert tuple(word for network in code.networks for word in network.words) == code.words
     numbers = iter(range(len(code.instructions)))
     place = 0
     for number, network in enumerate(code.networks):
@@ -82,13 +83,13 @@ def test_a_whole_memory_of_noise() -> None:
     noise = random.Random(20480)  # noqa: S311  # a fixed seed
     words = tuple(noise.randrange(0x10000) for _ in range(20480))
     code = Code.of(words)
-    assert code.words == words
+    assert encode(code.instructions) == words
     assert len([text for text in (found.text for found in code.instructions) if text.startswith("??")]) > 1000
 
 
 def test_a_whole_memory_of_one_unknown_function() -> None:
     words = (0x3FF4, *[0x9041] * 20479)  # each of them looks like the beginning of a network
-    assert Code.of(words).words == words
+    assert encode(Code.of(words).instructions) == words
 
 
 def test_bits_by_name() -> None:

@@ -103,6 +103,12 @@ def test_programs_without_mnemonics(cli: Cli) -> None:
     assert done.document("diff")["networks"] is None
 
 
+def test_standard_input_is_one_program(cli: Cli) -> None:
+    done = cli("diff", "-", "-")
+    assert (done.code, done.out) == (2, "")
+    assert "standard input holds one program" in done.err
+
+
 def test_a_long_network_shows_what_is_near(cli: Cli) -> None:
     rest = [word for number in range(100) for word in ((0x10 + number) << 8 | 0x88,)]
     backup_file("a.json", image_of([0x0040, *rest, 0x00C1]))
