@@ -9,12 +9,12 @@ import click
 
 from fatektool.cli.differences import beside
 from fatektool.cli.image_words import warn_of_image
+from fatektool.cli.inventory_file import inventory_option
 from fatektool.cli.options import PATH, voice_options
 from fatektool.cli.program_files import (
-    comments_from,
+    comments_beside,
     comments_options,
     program_file,
-    require_comments,
     warn_of_unknown,
 )
 from fatektool.cli.report import report_option, write_report
@@ -66,6 +66,7 @@ class NetworkRange:
 )
 @click.option("--words", is_flag=True, help="Show words, and no comments unless named.")
 @comments_options
+@inventory_option
 @report_option
 @voice_options
 def listing_command(
@@ -76,6 +77,7 @@ def listing_command(
     words: bool,
     comments: Path | None,
     encoding: str | None,
+    inventory: Path | None,
     report: Path | None,
 ) -> None:
     """List the program in FILE, a backup or a WinProladder project, in the vendor's mnemonics. Needs no PLC.
@@ -86,8 +88,7 @@ def listing_command(
     """
     ranges = [NetworkRange.parse(text) for text in wanted]
     found = program_file(file, voice, encoding)
-    require_comments(comments, found)
-    texts = comments_from(comments, voice, encoding) or found.comments
+    texts = comments_beside(found, comments, inventory, voice, encoding)
     in_lines = NO_COMMENTS if words and comments is None else texts
     networks = _chosen(found.networks, ranges)
     if found.backup is not None:

@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from fatektool.cli.inventory_file import inventory_path
 from fatektool.cli.options import PATH
 from fatektool.cli.pairs import together
 from fatektool.errors import DataError, FatektoolError
+from fatektool.inventory.find import load_inventory
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
     from fatektool.cli.options import Connection
     from fatektool.cli.output import Voice
     from fatektool.inventory.entries import PlcEntry
+    from fatektool.program.archive import Backup
     from fatektool.project.comments import Comments
     from fatektool.project.program_file import ProgramFile
 
@@ -94,6 +97,45 @@ def comments_from(path: Path | None, voice: Voice, encoding: str | None = None) 
             f"{path}: a backup has no comments, expected a WinProladder project (.pdw)", file=str(path)
         )
     return found.comments
+
+
+def comments_beside(
+    found: ProgramFile, path: Path | None, inventory: Path | None, voice: Voice, encoding: str | None = None
+) -> Comments:
+    """The comments of a program: of the project that is named, of the file, or of the inventory's project.
+
+    The inventory's is that of the PLC that a backup came from, by its target and station.
+
+    Raises:
+        DataError: the project that the user names does not hold.
+    """
+    project = None
+    if path is None and found.backup is not None:
+        project = _project_of(found.backup, inventory, voice)
+    known = path is not None or found.project is not None or project is not None
+    together("encoding", holds=known, needs="--comments or a project")
+    named = comments_from(path, voice, encoding)
+    if named is None and project is not None:
+        try:
+            named = comments_from(project, voice, encoding)
+        except FatektoolError as error:
+            voice.warn(f"no comments: {error.message}")
+    return found.comments if named is None else named
+
+
+def _project_of(backup: Backup, inventory: Path | None, voice: Voice) -> Path | None:
+    """The inventory's project for the PLC that a backup came from, if it is the only one there."""
+    path = inventory_path(inventory)
+    if path is None:
+        return None
+    try:
+        plcs = load_inventory(path).plcs.values()
+    except FatektoolError as error:
+        voice.warn(f"no comments: {error.message}")
+        return None
+    came_from = backup.source.target, backup.source.station
+    found = {entry.project for entry in plcs if (entry.target, entry.station) == came_from and entry.project}
+    return found.pop() if len(found) == 1 else None
 
 
 def comments_for(

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from fatektool.cli.inventory_file import inventory_option
 from fatektool.cli.options import PATH, voice_options
 from fatektool.cli.program_files import (
-    comments_from,
+    comments_beside,
     comments_options,
     program_file,
-    require_comments,
     warn_of_unknown,
 )
 from fatektool.errors import UsageError
@@ -38,9 +38,16 @@ _PLACES_SHOWN = 12
 @click.argument("file", type=PATH)
 @click.argument("elements", nargs=-1)
 @comments_options
+@inventory_option
 @voice_options
 def xref_command(
-    file: Path, voice: Voice, *, elements: tuple[str, ...], comments: Path | None, encoding: str | None
+    file: Path,
+    voice: Voice,
+    *,
+    elements: tuple[str, ...],
+    comments: Path | None,
+    encoding: str | None,
+    inventory: Path | None,
 ) -> None:
     """Show who reads and who writes each of ELEMENTS in the program FILE; without ELEMENTS all. Needs no PLC.
 
@@ -52,9 +59,8 @@ def xref_command(
         if not spans_of(element):
             raise UsageError(f"no element {element!r} of a program: expected such as M421, R100, WM8, T5")
     found = program_file(file, voice, encoding)
-    require_comments(comments, found)
+    texts = comments_beside(found, comments, inventory, voice, encoding).elements
     code = found.require_code()
-    texts = (comments_from(comments, voice, encoding) or found.comments).elements
     warn_of_unknown(found, voice)
     reference = CrossReference(code)
     shown = asked or reference.elements

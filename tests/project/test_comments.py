@@ -82,6 +82,21 @@ def test_the_project_of_the_inventory(cli: Cli, pdw: Path, monkeypatch: pytest.M
     assert "press: project: press.pdw" in checked.out
 
 
+def test_a_backup_has_the_comments_of_the_plc_that_it_came_from(cli: Cli, pdw: Path) -> None:
+    backup_file("press.json", IMAGE)  # from station 1 on /dev/ttyUSB0
+    Path("fatek.toml").write_text('[plc.press]\ntarget = "/dev/ttyUSB0"\nproject = "press.pdw"\n')
+    assert "ORG X0                        Błąd" in cli("listing", "press.json").out
+    assert cli("xref", "press.json", "X0").out.startswith("X0  Błąd\n")
+    assert "Błąd" not in cli("listing", "press.json", "--words").out
+    Path("fatek.toml").write_text('[plc.press]\ntarget = "/dev/ttyUSB1"\nproject = "press.pdw"\n')
+    assert cli("xref", "press.json", "X0").out.startswith("X0\n")
+    Path("other.toml").write_text('[plc.press]\ntarget = "/dev/ttyUSB0"\nproject = "no.pdw"\n')
+    done = cli("xref", "press.json", "X0", "--inventory", "other.toml")
+    assert done.code == 0
+    assert "warning: no comments: cannot read no.pdw" in done.err
+    assert pdw.exists()
+
+
 def test_diff_and_verify(cli: Cli, pdw: Path) -> None:
     other = image_of([*MAIN[:2], 0x0080, *MAIN[3:]], SUB)
     backup_file("other.json", other)
