@@ -14,6 +14,7 @@ from fatektool.cli.fleet_jobs import Done
 from fatektool.cli.options import PATH, Connection, Seconds, connection_options
 from fatektool.cli.pairs import apart, together
 from fatektool.cli.plugin import PluginCommand, check_document, plugin_line
+from fatektool.cli.unfinished import unfinished_document
 from fatektool.errors import FatektoolError, UsageError
 from fatektool.inventory.find import EXPECTATIONS
 from fatektool.jobs.check import Checked, State, check_backup, check_plc, parse_age
@@ -87,8 +88,9 @@ def check_command(
 ) -> int:
     """Check a PLC as a monitoring plugin: exit 0 OK, 1 WARNING, 2 CRITICAL, 3 UNKNOWN, and one line.
 
-    Looks at whether it answers, its mode, battery, ladder checksum, watchdog and emergency stop; whether its
-    program is the reference; whether there is a good backup, and how old.
+    Looks at whether it answers, its mode, battery, ladder checksum, watchdog and emergency stop; whether a
+    restore into it was left unfinished; whether its program is the reference; whether there is a good
+    backup, and how old.
     """
     if max_age is not None and backup is None:
         raise UsageError("--max-age goes with --backup FILE")
@@ -150,6 +152,9 @@ def check_one(
             check_plc(plc, found, expect=plan.expect, reference=plan.reference, progress=progress)
     except FatektoolError as error:
         found.fail(error)
+    unfinished = unfinished_document(connection.target, connection.station)
+    if unfinished is not None and found.differs is not False:  # the reference's program is whole
+        found.add(State.CRITICAL, f"restore UNFINISHED since {unfinished['time']}: it must not RUN")
     if plan.backup is not None:
         check_backup(plan.backup, found, max_age_s=plan.max_age_s, now=datetime.now(UTC))
     return _done(connection, name, plan, found)

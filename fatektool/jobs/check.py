@@ -9,6 +9,7 @@ ladder checksum        CRITICAL    that of the PLC's own status
 watchdog               CRITICAL    the same
 battery                WARNING     the same
 emergency stop         WARNING     the same: somebody pressed it, the PLC itself is well
+restore                CRITICAL    none into this PLC was left unfinished, as far as this user's records say
 program                CRITICAL    word for word that of the reference; UNKNOWN if either cannot be read
 backup                 CRITICAL    the last one can be read, and has a program in it
 its age                WARNING     not above the limit, not of the future
@@ -164,7 +165,8 @@ def _compare(plc: Plc, found: Checked, name: str, program: ProgramFile, progress
     compared = verify_file(plc, program, progress=progress)
     different = compared.pages
     found.differs = not different.same
-    pages = len(different.pages)
+    words = "1 word" if different.word_count == 1 else f"{different.word_count} words"
+    pages = "1 page" if len(different.pages) == 1 else f"{len(different.pages)} pages"
     found.figures["words_differ"] = str(different.word_count)
     networks = "" if compared.networks_summary is None else f"{compared.networks_summary}, "
     if different.same:
@@ -174,7 +176,7 @@ def _compare(plc: Plc, found: Checked, name: str, program: ProgramFile, progress
     else:
         found.add(
             State.CRITICAL,
-            f"program DIFFERS from {name}: {networks}{different.word_count} words in {pages} pages",
+            f"program DIFFERS from {name}: {networks}{words} in {pages}",
         )
 
 

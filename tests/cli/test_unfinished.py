@@ -52,6 +52,9 @@ def test_who_talks_to_it_next_is_warned(press: Press, cli: Cli, door: Door, stat
         assert lines[at + 3] == f"  old program  {safety}"
         assert lines[at + 4 : at + 6] == ["  to finish it:", again], words
         assert record.exists()
+    checked = cli("check", "--expect", "any", "-p", door.target)
+    assert checked.code == 2
+    assert "restore UNFINISHED since 20" in checked.out
     assert cli("stop", "-p", door.target, "--yes").code == 0
     document = cli("status", "-p", door.target, "--json").document("status")["unfinished_restore"]
     assert (document["file"], document["safety_backup"]) == (str(press.new), str(safety))
