@@ -155,8 +155,11 @@ def operand(part: Part, value: int, nibble: int) -> Operand:
     """
     if part.kind is Kind.BIT:
         return _bit(part, value)
-    if part.kind in {Kind.MUTE, Kind.CODE, Kind.TEXT}:
-        return Operand(part, value, characters(value) if part.kind is Kind.TEXT else str(value))
+    if part.kind is Kind.TEXT:
+        text = characters(value)
+        return Operand(part, value, text, Grade.C if "\\" in text else Grade.A)
+    if part.kind in {Kind.MUTE, Kind.CODE}:
+        return Operand(part, value, str(value))
     if part.kind is Kind.NUMBER and value < _FIRST_ADDRESS:
         return Operand(part, value, str(value), Grade.B)
     if nibble & part.constant:
@@ -170,8 +173,16 @@ def number(value: int, bits: int) -> str:
 
 
 def characters(value: int) -> str:
-    """Two characters packed as the first times 128 plus the second; a NUL is left out."""
-    return "".join(chr(code) for code in (value >> 7, value & 0x7F) if code)
+    """Two characters packed as the first times 128 plus the second; a NUL is left out.
+
+    What is no printable ASCII character is shown as its code in hex.
+    """
+    return "".join(character(code) for code in (value >> 7, value & 0x7F) if code)
+
+
+def character(code: int) -> str:
+    """A character of a label or a text."""
+    return chr(code) if 0x20 <= code < 0x7F else f"\\x{code:02X}"
 
 
 def _constant(part: Part, value: int) -> Operand:

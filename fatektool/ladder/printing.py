@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 from fatektool.ladder.forms import Form, Shape
-from fatektool.ladder.operands import characters
+from fatektool.ladder.operands import character
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -34,7 +34,7 @@ def print_function(form: Form, free: int, operands: Sequence[Operand]) -> str:
         one=nibble & 1,
         two=nibble & 3,
         three=nibble & 7,
-        char=characters(free >> 8),
+        char=character(free >> 8) if free >> 8 else "",
     )
 
 

@@ -58,6 +58,7 @@ def test_there_are_enough_vectors() -> None:
         ((0x3FF4, 0x9041, 0x9241, 0x0040, 0x00C1), "?? 3FF4 9041 9241|ORG X0|OUT Y0"),
         ((0x3FF4, 0x9041, 0xFC6F, 0x00C1, 0xEB5F), "?? 3FF4 9041 FC6F 00C1|ORG OPEN"),
         ((0x3FF4, 0x1234, 0x0040, 0x3FF4, 0x0040, 0x00C1), "?? 3FF4 1234|ORG X0|?? 3FF4|ORG X0|OUT Y0"),
+        ((0x1BEF, 0xFFFF, 0x002A, 0x0000), "~FUN 65 LBL \\x1B\\x1FF\\x7FT"),
         ((0x84EE, 0x00C1), "?? 84EE|OUT Y0"),
         ((0x81EE, 0x0040), "|ORG X0"),
         ((0x00E0, 0xE68F, 0x00E0, 0xE69F), "~AND TU SHORT|~AND TD OPEN"),

@@ -55,6 +55,7 @@ def test_words_come_back(words: tuple[int, ...] | list[int]) -> None:
     assert encode(found) == tuple(words)
     for instruction in found:
         assert instruction.words
+        assert instruction.text.isprintable()
         assert instruction.known == (not instruction.text.startswith("??"))
         assert instruction.text or instruction.is_drawing
         for access in instruction.accesses:
