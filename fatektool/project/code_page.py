@@ -6,6 +6,7 @@ look most like words: accented letters beside letters, ideographs of the common 
 
 from __future__ import annotations
 
+import codecs
 import unicodedata
 from typing import TYPE_CHECKING, Final, NamedTuple
 
@@ -25,9 +26,22 @@ DOUBLE: Final = {"cp932": (0x88, 0x97), "cp936": (0xB0, 0xD7), "cp950": (0xA4, 0
 CODE_PAGES: Final = ("cp1250", "cp1252", "cp932", "cp936", "cp950", "cp1254")
 LAST_RESORT: Final = "latin-1"
 _SIGNS: Final = "°²³µ±×÷§·–—…‘’“”€"  # noqa: RUF001  # what is meant
-_RARE: Final = "œŒìû"
+_VOWELS: Final = "aeiouyáéíóú"
+_CONSONANTS: Final = "bcdfghjklmnpqrstvwxyz"
+_BEFORE: Final = {
+    **dict.fromkeys("ùòìÈ", " "),
+    **dict.fromkeys("øè", _CONSONANTS),
+    "ñ": _VOWELS,
+    "õ": "e",
+    "œ": "u",
+    "û": "t",
+}
+"""Letters of cp1252 that have a letter of Central Europe in their place in cp1250, and what follows them in
+the languages of the former: the end of a word (a space), a consonant, a vowel."""
 _TURKISH: Final = "ğıİşŞĞ"
 _ASCII: Final = 0x80
+_FULL: Final = (15, 16)
+"""An element's comment has at most 16 bytes: one of so many may have been cut."""
 _LOOKED_AT: Final = 1000
 _LONGEST: Final = 200
 """How many texts, and how much of each, are enough to tell by what they look like; all must decode."""
@@ -69,9 +83,19 @@ def choose(texts: Sequence[bytes]) -> Choice:
     return Choice(max(found, key=lambda each: each[1])[0], sure=True)
 
 
+def decoded(text: bytes, name: str) -> str:
+    """A text in a code page; half a character at the end of one that fills its place is left out.
+
+    Raises:
+        UnicodeDecodeError: it does not decode.
+    """
+    decoder = codecs.getincrementaldecoder(name)("strict")
+    return decoder.decode(text, final=len(text) not in _FULL)
+
+
 def _all(texts: Iterable[bytes], name: str) -> list[str] | None:
     try:
-        return [text.decode(name) for text in texts]
+        return [decoded(text, name) for text in texts]
     except UnicodeDecodeError:
         return None
 
@@ -81,20 +105,22 @@ def _likeness(text: str, name: str) -> int:
     score = 0
     for place, letter in enumerate(text):
         if ord(letter) >= _ASCII:
-            around = text[max(0, place - 1) : place] + text[place + 1 : place + 2]
+            behind = text[place + 1 : place + 2]
+            around = text[max(0, place - 1) : place] + behind
             if name in SINGLE:
-                score += _letter(letter, around, SINGLE[name])
+                score += _letter(letter, around, behind or " ", name)
             else:
                 score += _ideograph(letter, around, name)
     return score
 
 
-def _letter(letter: str, around: str, letters: str) -> int:
+def _letter(letter: str, around: str, behind: str, name: str) -> int:
     if letter in _SIGNS:
         return 0
-    if letter not in letters:
+    if letter not in SINGLE[name]:
         return -1
-    if letter in _RARE or not any(near.isascii() and near.isalpha() for near in around):
+    is_odd = name == "cp1252" and behind.lower() not in _BEFORE.get(letter, behind.lower())
+    if is_odd or not any(near.isascii() and near.isalpha() for near in around):
         return 1
     return 3 if letter in _TURKISH else 2
 

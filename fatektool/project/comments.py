@@ -14,7 +14,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from fatektool.project.code_page import Choice, choose
+from fatektool.project.code_page import Choice, choose, decoded
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -93,8 +93,11 @@ def comments_of(records: Sequence[Record], encoding: str | None = None) -> Comme
     page = Choice(encoding, sure=True) if encoding is not None else choose(raw.texts)
 
     def plain(text: bytes) -> str:
-        decoded = text.decode(page.name, "replace")
-        return "".join(letter if letter.isprintable() else " " for letter in decoded).strip()
+        try:
+            found = decoded(text, page.name)
+        except UnicodeDecodeError:  # in a code page that was named
+            found = text.decode(page.name, "replace")
+        return "".join(letter if letter.isprintable() else " " for letter in found).strip()
 
     return Comments(
         name=plain(raw.name),

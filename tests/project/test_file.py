@@ -72,6 +72,35 @@ def test_comments_in_the_authors_code_page(page: str, texts: list[str]) -> None:
     assert list(found.elements.values()) == texts
 
 
+@pytest.mark.parametrize(
+    ("page", "text"),
+    [
+        ("cp1250", "Ohřev zap"),
+        ("cp1250", "Töltő szelep"),
+        ("cp1250", "Dzień"),
+        ("cp1250", "Průtok"),
+        ("cp1252", "Trykk høyt"),
+        ("cp1252", "Señal"),
+        ("cp1252", "Emissões"),
+        ("cp1252", "Pièce"),
+        ("cp1254", "Soğutma"),
+    ],
+)
+def test_one_comment_may_be_enough(page: str, text: str) -> None:
+    found = Project.parse(project(IMAGE, FBS, elements={"X0": text.encode(page)})).comments
+    assert (found.code_page, found.elements["X0"]) == (page, text)
+
+
+def test_a_comment_cut_within_a_character() -> None:
+    text = "AB1号电机正转启动了".encode("cp936")[:16]
+    elements = {"X0": text, "X1": "停止".encode("cp936")}
+    found = Project.parse(project(IMAGE, FBS, elements=elements)).comments
+    assert (found.code_page, found.sure) == ("cp936", True)
+    assert found.elements["X0"] == "AB1号电机正转启"
+    short = Project.parse(project(IMAGE, FBS, elements={"X0": text[:6]}), encoding="cp936").comments
+    assert short.elements["X0"].startswith("AB1号")
+
+
 def test_a_named_code_page_wins() -> None:
     data = project(IMAGE, FBS, elements={"X0": "Błąd".encode("cp1250")})
     assert Project.parse(data, encoding="cp1252").comments.elements == {"X0": "B³¹d"}
