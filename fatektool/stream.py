@@ -66,11 +66,11 @@ def _read_ahead(link: Link, requests: Sequence[Request[A]], first: int, take: Ca
     hearing = link.hearing
     last = len(requests) - 1
     asked = sent = link.prepare(requests[first])
-    waiting: Frame | bytes = b""  # the last answer, not yet looked at
+    waiting: bytes | None = None  # the last answer, not yet looked at
     for place in range(first, len(requests)):
         link.sender.send(sent)
         link.counters.exchanges += 1
-        if place > first and not _accept(link, requests[place - 1], asked, waiting, take):
+        if waiting is not None and not _accept(link, requests[place - 1], asked, waiting, take):
             hearing.give_up()
             return True
         asked = sent
@@ -80,10 +80,15 @@ def _read_ahead(link: Link, requests: Sequence[Request[A]], first: int, take: Ca
         link.sender.heard_out()
         if received is None:
             return True
-        waiting = received
+        if isinstance(received, bytes):
+            waiting = received
+        elif _accept(link, requests[place], asked, received, take):
+            waiting = None
+        else:  # a refusal, mostly: nothing is sent behind it whose answer nobody would wait for
+            return True
         if hearing.drop_input():
             break
-    return not _accept(link, requests[place], asked, waiting, take)
+    return waiting is not None and not _accept(link, requests[place], asked, waiting, take)
 
 
 def _write_by_write(

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from fatektool.jobs.finding import Finding
     from fatektool.jobs.loopback_result import LoopbackResult, Tally
     from fatektool.jobs.raw_frame import RawFrame
-    from fatektool.jobs.scan import ScanResult, Setting, Station, Unclear
+    from fatektool.jobs.scan_result import ScanResult, Setting, Station, Unclear
 
 
 def loopback_document(plc: Plc, result: LoopbackResult, findings: Iterable[Finding]) -> dict[str, Any]:

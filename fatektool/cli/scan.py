@@ -13,7 +13,8 @@ from fatektool.cli.network import look_for_modules, network_option
 from fatektool.cli.options import PROTOCOLS, Connection, Several, connection_options
 from fatektool.cli.pairs import apart, together
 from fatektool.errors import UsageError
-from fatektool.jobs.scan import ScanResult, Setting, scan
+from fatektool.jobs.scan import scan
+from fatektool.jobs.scan_result import ScanResult, Setting
 from fatektool.jobs.times import utc
 from fatektool.protocol.line_settings import BAUDS, FORMATS
 from fatektool.silence import longer_timeout
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fatektool.cli.output import Voice
-    from fatektool.jobs.scan import Station
+    from fatektool.jobs.scan_result import Station
 
 
 _OF_UNITS = "modbus-tcp"

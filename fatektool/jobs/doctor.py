@@ -18,7 +18,8 @@ from fatektool.jobs.finding import Case, Finding
 from fatektool.jobs.high_speed import high_speed_findings
 from fatektool.jobs.loopback import run_loopback
 from fatektool.jobs.loopback_result import LoopbackPlan
-from fatektool.jobs.scan import ScanResult, Setting, Station, scan
+from fatektool.jobs.scan import scan
+from fatektool.jobs.scan_result import ScanResult, Setting, Station
 from fatektool.protocol.line_settings import BAUDS, FORMATS
 from fatektool.transport.base import LineSettings
 

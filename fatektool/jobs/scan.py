@@ -15,7 +15,7 @@ numbers far apart are asked. If all of them answer the same, it is one PLC, and 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from math import inf
 from typing import TYPE_CHECKING, Final
 
@@ -28,14 +28,16 @@ from fatektool.errors import (
     TransportTimeout,
     UsageError,
 )
+from fatektool.jobs.scan_result import ScanResult, Station, Unclear
 from fatektool.protocol.codec import require_station
 from fatektool.protocol.status import BriefStatus
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from fatektool.protocol.codec import Codec, Frame
-    from fatektool.transport.base import LineSettings, Transport
+    from fatektool.jobs.scan_result import Setting
+    from fatektool.protocol.codec import Frame
+    from fatektool.transport.base import Transport
 
 _READ_BYTES: Final = 4096
 _MOST_CLOSED: Final = 3
@@ -44,69 +46,6 @@ _LATE_S: Final = 2.0
 _ENOUGH_TO_COMPARE: Final = 2
 _FAR_APART: Final = (254, 247, 191, 128)
 """Numbers that hardly anybody has, asked where every number may be answered."""
-
-
-@dataclass(frozen=True, slots=True)
-class Setting:
-    """A protocol at a speed and format."""
-
-    codec: Codec
-    line: LineSettings
-
-
-@dataclass(frozen=True, slots=True)
-class Station:
-    """A station that answered.
-
-    Attributes:
-        station: as it answered.
-        setting: at which it did.
-        brief: its brief status; None if it refused to tell, or was not asked.
-        latency_s: how long it took; None if that is not known.
-        late: True if its answer came after the time-out.
-        any_number: True if this PLC answers every station's number.
-    """
-
-    station: int
-    setting: Setting
-    brief: BriefStatus | None
-    latency_s: float | None
-    late: bool = False
-    any_number: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class Unclear:
-    """A place where something was heard, and no frame of it."""
-
-    station: int
-    setting: Setting
-    noise_bytes: int
-
-
-@dataclass(slots=True)
-class ScanResult:
-    """What a scan found, in the order it was found.
-
-    Attributes:
-        found: who answered.
-        unclear: where something was heard that is no frame.
-        refused: settings that this port does not take.
-        tried: those that it took.
-        probes: how often somebody was asked.
-        duration_s: how long it took.
-        interrupted: by Ctrl-C.
-        out_of_time: True if it ended before all was tried.
-    """
-
-    found: list[Station] = field(default_factory=list)
-    unclear: list[Unclear] = field(default_factory=list)
-    refused: list[Setting] = field(default_factory=list)
-    tried: list[Setting] = field(default_factory=list)
-    probes: int = 0
-    duration_s: float = 0.0
-    interrupted: bool = False
-    out_of_time: bool = False
 
 
 def scan(

@@ -52,7 +52,7 @@ class Snapshot:
     Attributes:
         time: when it was begun, UTC, RFC 3339.
         target: as the user named it.
-        station: 1 to 254.
+        station: 1 to 254; over Modbus TCP also 0 and 255.
         protocol: ``facon``.
         running: True in RUN; None if the protocol does not tell.
         duration_s: how long the reading took.

@@ -6,6 +6,10 @@ of such a file would be NUL to whoever took it for UTF-8.
 
 from __future__ import annotations
 
+from typing import Final
+
+_MARK: Final = b"\xef\xbb\xbf"
+
 
 class EncodingError(ValueError):
     """Bytes that are no text in UTF-8."""
@@ -21,7 +25,9 @@ def plain_text(data: bytes) -> str:
         raise EncodingError(
             "text in UTF-16, expected UTF-8: save it as UTF-8, in PowerShell with '| Out-File -Encoding utf8'"
         )
+    text = data.removeprefix(_MARK)
     try:
-        return data.decode("utf-8-sig")
+        return text.decode("utf-8")  # not utf-8-sig: Python would have to find that codec's file first
     except UnicodeDecodeError as error:
-        raise EncodingError(f"no text in UTF-8: byte {error.start} is {data[error.start]:02X}") from error
+        place = error.start + len(data) - len(text)
+        raise EncodingError(f"no text in UTF-8: byte {place} is {data[place]:02X}") from error

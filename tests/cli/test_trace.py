@@ -115,7 +115,7 @@ def test_a_command_that_is_interrupted(place: Path, suffix: str, number: signal.
         command.communicate()
     assert command.returncode == 130
     pages = [record.data for record in records(trace) if record.data[:5] == b"\x02014F"]
-    assert b"000A" in pages[-1] or b"000A" in pages[-2]
+    assert any(page[5:9] == b"000A" for page in pages)  # it may have gone on before the signal came
     assert process("decode", trace).code == 0
 
 

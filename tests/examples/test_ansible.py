@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from .conftest import Gateway
 
 pytestmark = [
+    pytest.mark.slow,
     pytest.mark.timeout(300),  # a process for each task and host, and sudo for most of them
     pytest.mark.skipif(
         importlib.util.find_spec("ansible") is None and not os.environ.get("CI"),

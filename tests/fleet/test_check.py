@@ -142,7 +142,7 @@ def test_a_reference_that_is_none_hides_nothing(cli: Cli, plant: Hall, spoil: Ca
     assert plugin(cli, "-p", "press")[0] == 2
     assert cli("fleet", "check", "--select", "press").code == 2
     with deaf_door() as target:
-        plant.write(deaf=f'target = "{target}"\nreference = "gone.json"\n')
+        plant.write(deaf=f'target = "{target}"\ntimeout_s = 0.05\nreference = "gone.json"\n')
         code, words, _ = plugin(cli, "-p", "deaf")
         assert (code, "no answer from station 1" in words) == (2, True)
         assert cli("fleet", "check", "--select", "deaf").code == 2
@@ -183,7 +183,7 @@ def test_a_battery_outweighs_a_program_that_cannot_be_compared(cli: Cli, plant: 
 def test_unreachable(cli: Cli, plant: Hall) -> None:
     kept(OLD, "dead.json")
     with deaf_door() as target:
-        plant.write(deaf=f'target = "{target}"\n')
+        plant.write(deaf=f'target = "{target}"\ntimeout_s = 0.05\n')
         code, words, _ = plugin(cli, "-p", "deaf")
         assert code == 2
         assert "no answer from station 1" in words
@@ -207,7 +207,7 @@ def test_a_line_in_use_tells_nothing(cli: Cli, plant: Hall) -> None:
 
 def test_it_is_over_at_its_deadline(cli: Cli, plant: Hall) -> None:
     with deaf_door() as target:
-        plant.write(deaf=f'target = "{target}"\nretries = 1000\n')
+        plant.write(deaf=f'target = "{target}"\ntimeout_s = 0.05\nretries = 1000\n')
         code, words, _ = plugin(cli, "-p", "deaf", "--deadline", "0.2")
     assert code == 2
     assert "deaf: " in words

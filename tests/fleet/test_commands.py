@@ -46,7 +46,7 @@ def test_status(cli: Cli, plant: Hall) -> None:
 
 def test_a_document_has_each_plc_s_own(cli: Cli, plant: Hall) -> None:
     with deaf_door() as target:
-        plant.write(deaf=f'target = "{target}"\n', nobody='target = "tcp://127.0.0.1:1"\n')
+        plant.write(deaf=f'target = "{target}"\ntimeout_s = 0.05\n', nobody='target = "tcp://127.0.0.1:1"\n')
         done = cli("fleet", "status", "--json", "--select", "p*", "--select", "nobody", "--select", "deaf")
     assert done.code == 1
     document = done.document("fleet")

@@ -73,7 +73,7 @@ def test_a_header_that_does_not_hold(*, single_pass: bool) -> None:
 
 def test_a_plc_that_keeps_its_program_to_itself() -> None:
     bench = Bench(program(400), program_commands=False)
-    with pytest.raises(PlcRefused, match=r"read program page 0 .4F.: error 4, .*vendor's program") as caught:
+    with pytest.raises(PlcRefused, match=r"read program page 0 .4F.: error 4, .*project file") as caught:
         backup(bench.plc)
     assert caught.value.exit_code == 4
 

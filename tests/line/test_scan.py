@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from fatektool.errors import LineError, TransportClosed, UsageError
-from fatektool.jobs.scan import ScanResult, Setting, Station, scan
+from fatektool.jobs.scan import scan
+from fatektool.jobs.scan_result import ScanResult, Setting, Station
 from fatektool.protocol.facon import FACON
 from fatektool.protocol.line_settings import BAUDS
 from fatektool.simulator.build import build_simulation

@@ -104,7 +104,7 @@ def test_a_plc_that_went_between_two_questions_is_a_line_error() -> None:
     server = Server(build_simulation())
     door = server.open_tcp()
     with running(server):
-        plc = connect(door.address, timeout_s=GUARD_S)
+        plc = connect(door.address, timeout_s=GUARD_S, retries=0)  # without the pauses between tries
         plc.loopback(b"A")
     with plc, pytest.raises(LineError, match="cannot connect") as caught:
         plc.loopback(b"B")

@@ -45,7 +45,7 @@ DAMAGE: dict[str, Callable[[dict[str, Any]], object]] = {
     "no schema": lambda d: d.pop("schema"),
     "time": lambda d: d.update(time="yesterday"),
     "station": lambda d: d.update(station=True),
-    "station 0": lambda d: d.update(station=0),
+    "station 256": lambda d: d.update(station=256),
     "running": lambda d: d.update(running=1),
     "duration": lambda d: d.update(duration_s=-1),
     "requests": lambda d: d.pop("requests"),

@@ -16,7 +16,8 @@ from fatektool.jobs.loopback import run_loopback
 from fatektool.jobs.loopback_result import LoopbackPlan
 from fatektool.jobs.reading import MOST_PASSES
 from fatektool.jobs.restore import restore
-from fatektool.jobs.scan import Setting, scan
+from fatektool.jobs.scan import scan
+from fatektool.jobs.scan_result import Setting
 from fatektool.jobs.selection import parse_items
 from fatektool.jobs.snapshot import raw_of, take_snapshot
 from fatektool.jobs.snapshot_apply import apply_plan, plan_apply

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from fatektool.jobs.scan import Setting, scan
+from fatektool.jobs.scan import scan
+from fatektool.jobs.scan_result import Setting
 from fatektool.protocol.facon import FACON
 from fatektool.simulator.faults import BIT_ERRORS, FAULT_KINDS, POWER_CUT
 from fatektool.transport.base import LineSettings

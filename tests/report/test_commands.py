@@ -218,7 +218,7 @@ def test_a_folder_of_another_format_has_no_series(press: Press, cli: Cli) -> Non
         ("old.json", "old.json is there already, is no report, and is kept; name another file"),
         ("no/x.html", "no is no folder"),
         (".", ". is a folder, expected a file name"),
-        ("/dev/null", "is a device or a pipe"),
+        ("/dev/null", "is a device"),
         ("-", "--report -: expected a file name"),
     ],
 )

@@ -1,0 +1,74 @@
+"""What a scan is made of and what it found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from fatektool.protocol.codec import Codec
+    from fatektool.protocol.status import BriefStatus
+    from fatektool.transport.base import LineSettings
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """A protocol at a speed and format."""
+
+    codec: Codec
+    line: LineSettings
+
+
+@dataclass(frozen=True, slots=True)
+class Station:
+    """A station that answered.
+
+    Attributes:
+        station: as it answered.
+        setting: at which it did.
+        brief: its brief status; None if it refused to tell, or was not asked.
+        latency_s: how long it took; None if that is not known.
+        late: True if its answer came after the time-out.
+        any_number: True if this PLC answers every station's number.
+    """
+
+    station: int
+    setting: Setting
+    brief: BriefStatus | None
+    latency_s: float | None
+    late: bool = False
+    any_number: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Unclear:
+    """A place where something was heard, and no frame of it."""
+
+    station: int
+    setting: Setting
+    noise_bytes: int
+
+
+@dataclass(slots=True)
+class ScanResult:
+    """What a scan found, in the order it was found.
+
+    Attributes:
+        found: who answered.
+        unclear: where something was heard that is no frame.
+        refused: settings that this port does not take.
+        tried: those that it took.
+        probes: how often somebody was asked.
+        duration_s: how long it took.
+        interrupted: by Ctrl-C.
+        out_of_time: True if it ended before all was tried.
+    """
+
+    found: list[Station] = field(default_factory=list)
+    unclear: list[Unclear] = field(default_factory=list)
+    refused: list[Setting] = field(default_factory=list)
+    tried: list[Setting] = field(default_factory=list)
+    probes: int = 0
+    duration_s: float = 0.0
+    interrupted: bool = False
+    out_of_time: bool = False
