@@ -174,5 +174,5 @@ def _done(connection: Connection, name: str, plan: Plan, found: Checked) -> Chec
         found.differs,
         found.flags,
         found.flags is not None,
-        line=plugin_line(found.state, f"{name}: {found.words}", found.figures),
+        line=plugin_line(found.state, f"{name}: {found.words.removeprefix(f'{name}: ')}", found.figures),
     )

@@ -36,8 +36,8 @@ def refused_pages(program: Program) -> str | None:
     count, asked = len(program.pages), program.pages_asked_for
     if count == asked:
         return None
-    left = ranges(range(count, asked))
-    said = f"the PLC refused page {left} as past its end and gave {count} pages"
+    pages = "page" if asked == count + 1 else "pages"
+    said = f"the PLC refused {pages} {ranges(range(count, asked))} as past its end and gave {count} pages"
     announced = program.header.announced_pages
     if announced is None or announced > count:
         return f"{said}; its ladder size of {program.ladder_words} words asks for {asked}"

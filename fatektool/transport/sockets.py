@@ -100,8 +100,8 @@ class SocketTransport(Transport):
         self.close()
         return TransportClosed(
             f"{self.name}: the connection broke: {error.strerror or error}{words}",
-            hint="is the PLC's Ethernet module on, and the cable in? Another program may hold its only "
-            "connection",
+            hint="is the PLC's Ethernet module or the gateway on, and the cable in? Other programs may hold "
+            "all the connections that it has (a FATEK module has 8, many gateways 1)",
             may_return=isinstance(error, ConnectionError),
         )
 

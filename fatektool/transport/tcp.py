@@ -13,9 +13,12 @@ from fatektool.transport.sockets import SocketTransport, connected_to
 if TYPE_CHECKING:
     from fatektool.transport.sockets import Address
 
+_TAKEN: Final = (
+    "other programs may hold all the connections that it has (a FATEK module has 8, many gateways 1)"
+)
 _HINTS: Final = (
     "check address and port, and that the PLC's Ethernet module or the gateway is on",
-    "another program may hold the PLC's only connection",
+    _TAKEN,
 )
 """If it could not be connected to; if it took the connection and reset it."""
 
@@ -55,7 +58,7 @@ class TcpTransport(SocketTransport):
             self.close()
             raise TransportClosed(
                 f"{self.name}: the other side closed the connection{words}",
-                hint="another program may hold the PLC's only connection",
+                hint=_TAKEN,
                 may_return=True,
             )
         if len(self._first) <= MOST_SAID:

@@ -47,6 +47,12 @@ def test_backup_inspect_verify(plc: Path, cli: Cli) -> None:
     assert cli("backup", "b1.json", "-q", "-p", f"sim:{plc}", "--force").err == ""
 
 
+def test_several_refused_pages(place: Path, cli: Cli) -> None:
+    build_simulation(model="fbs-24mc", state=place / "fbs.state")
+    done = cli("backup", "fbs.json", "-p", f"sim:{place / 'fbs.state'}", "--single-pass")
+    assert done.err.startswith("the PLC refused pages 320-512 as past its end and gave 320 pages: all that")
+
+
 def test_a_checksum_that_does_not_hold_is_a_warning_and_in_the_json(plc: Path, cli: Cli) -> None:
     spoiled(plc, 5)
     done = cli("backup", "b1.json", "-p", f"sim:{plc}", "--json")

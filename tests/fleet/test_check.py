@@ -205,6 +205,11 @@ def test_a_line_in_use_tells_nothing(cli: Cli, plant: Hall) -> None:
     assert "is in use by process" in words
 
 
+def test_a_target_is_named_once(cli: Cli) -> None:
+    _, words, _ = plugin(cli, "-p", "/dev/no-such-port")
+    assert words == "/dev/no-such-port: no such port"
+
+
 def test_it_is_over_at_its_deadline(cli: Cli, plant: Hall) -> None:
     with deaf_door() as target:
         plant.write(deaf=f'target = "{target}"\ntimeout_s = 0.05\nretries = 1000\n')
