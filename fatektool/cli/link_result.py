@@ -52,6 +52,8 @@ def result_command(wr: str, connection: Connection, voice: Voice, *, kind: str |
     voice.show(document, _lines(report))
     for warning in host.warnings():
         voice.warn(warning)
+    if check and report.kind is None and report.good:
+        voice.warn("without --kind, 0 proves little: of md3 it says nothing of the stations; name the kind")
     return int(check and not report.good)
 
 

@@ -16,7 +16,7 @@ from fatektool.cli.incomplete import write_lines
 from fatektool.errors import RestoreIncomplete
 from fatektool.jobs.snapshot_formats import as_json
 from fatektool.jobs.times import stamp
-from fatektool.program.files import write_new
+from fatektool.program.files import STANDARD, write_new
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -104,6 +104,8 @@ def save_safety(present: Snapshot, name: str, folder: Path) -> Path:
         UsageError: the folder cannot be written.
         DataError: the disk is full or broken.
     """
+    if name == STANDARD:  # read from standard input; a name that begins with - is an option to others
+        name = "stdin"
     start = os.fsencode(name)[:150].decode(errors="ignore")
     stem = f"{start}.safety-st{present.station:02}-{stamp(present.time)}"
     return write_new(folder, stem, "json", as_json(present).encode())

@@ -252,6 +252,9 @@ def test_a_program_is_read_from_standard_input(press: Press) -> None:
     Path("s.json").write_bytes(snapshot)
     assert fed("snapshot diff - s.json", snapshot).returncode == 0
     assert fed(f"snapshot apply - -p {press.target} --yes", snapshot).returncode == 0
+    assert fed(f"write R0=9 -p {press.target}", b"").returncode == 0
+    assert fed(f"snapshot apply - -p {press.target} --yes", snapshot).returncode == 0
+    assert len(list(Path().glob("stdin.safety-st01-*.json"))) == 2  # no name that begins with -
 
 
 @pytest.mark.parametrize("words", ["inspect -", "diff - x.json", "snapshot diff - -", "link table check -"])

@@ -72,7 +72,9 @@ def test_result(fbs: Plant) -> None:
     assert "command      46H, read registers" in done.out.splitlines()
     assert "outputs      ERR DN" in done.out.splitlines()
     assert fbs.cli("link", "result", "D100", "--check").code == 1
-    assert fbs.cli("link", "result", "D200", "--check").code == 0
+    unsure = fbs.cli("link", "result", "D200", "--check")
+    assert (unsure.code, "without --kind, 0 proves little" in unsure.err) == (0, True)
+    assert fbs.cli("link", "result", "D200", "--check", "--kind", "md0").err == ""
     foreign = fbs.cli("link", "result", "D100", "--kind", "mbus").out
     assert "command      46H, no command of such a transaction" in foreign.splitlines()
     unnamed = fbs.cli("link", "result", "D100").out
