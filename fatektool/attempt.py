@@ -14,7 +14,14 @@ import contextlib
 from operator import eq
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
-from fatektool.errors import FrameError, GatewayTimeout, PlcBusy, PlcRefused, TransportTimeout
+from fatektool.errors import (
+    FrameError,
+    GatewayTimeout,
+    PlcBusy,
+    PlcRefused,
+    TransportClosed,
+    TransportTimeout,
+)
 from fatektool.protocol.commands import Loopback
 
 if TYPE_CHECKING:
@@ -71,15 +78,16 @@ class Attempts:
         link = self._link
         self._renew_if_silent()
         sent = link.prepare(request)
-        link.hearing.words = ""
+        link.hearing.words, link.hearing.gateway = "", None
         link.counters.exchanges += 1
         self._heard.clear()
         try:
             link.sender.send(sent)
             return self._await(request, sent)
-        except GatewayTimeout:
+        except GatewayTimeout as error:
             link.counters.timeouts += 1
             link.hearing.doubt = True
+            link.hearing.gateway = error
             raise
         except TransportTimeout:
             link.counters.timeouts += 1
@@ -96,10 +104,16 @@ class Attempts:
             link.sender.heard_out()
 
     def _renew_if_silent(self) -> None:
-        """Connect anew after a long silence: now, not before, as a late answer is listened for until then."""
-        if self._silent >= _SILENT_TRIES_BEFORE_RENEWAL:
-            self._silent = 0
-            self._link.transport.renew()
+        """Connect anew after a long silence, unless the PLC is late: its answer comes on this connection."""
+        if self._silent < _SILENT_TRIES_BEFORE_RENEWAL:
+            return
+        self._silent = 0
+        link = self._link
+        if "://" in link.transport.name:  # what else has no connection to lose: a late answer is heard later
+            with contextlib.suppress(TransportClosed):
+                link.listen_for_late()
+        if not link.hearing.late_s:
+            link.transport.renew()
 
     def _await(self, request: Request[A], sent: Sent) -> A:
         link = self._link

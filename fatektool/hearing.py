@@ -20,6 +20,7 @@ from fatektool.protocol.commands import Command
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from fatektool.errors import GatewayTimeout
     from fatektool.protocol.codec import Decoder, Frame
     from fatektool.sending import Sent
     from fatektool.transport.base import Transport
@@ -67,6 +68,7 @@ class Hearing:
         on_stray: is shown each good frame that answers nothing asked then.
         on_bad_bytes: is shown what was no frame.
         words: what was heard instead of an answer, for messages; empty for silence.
+        gateway: what a gateway said instead of an answer to the last request; None if none did.
         misnumbered: True if an answer bore a number that no request had.
     """
 
@@ -79,6 +81,7 @@ class Hearing:
         self.on_stray: Callable[[Frame], object] = _to_nobody
         self.on_bad_bytes: Callable[[FrameError], object] = _to_nobody
         self.words = ""
+        self.gateway: GatewayTimeout | None = None
         self.misnumbered = False
         self._transport = transport
         self._station = station

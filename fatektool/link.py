@@ -301,11 +301,11 @@ class Link:
         if isinstance(failure, TransportClosed | DeadlinePassed):
             return failure
         if not account.alive:
-            self._listen_for_late()
+            self.listen_for_late()
         return Silence(self, request, failure, account, unknown).error()
 
-    def _listen_for_late(self) -> None:
-        """Before a PLC is called silent: is it only late?"""
+    def listen_for_late(self) -> None:
+        """Before a PLC is called silent, or its connection made anew: is it only late?"""
         hearing, since = self.hearing, self.hearing.owed_since
         if since is not None and not hearing.late_s and not hearing.words:
             longest_s = min(MOST_PATIENCE * self.timeout_s, self.timeout_s + LONGEST_LISTENING_S)

@@ -99,10 +99,15 @@ class Silence:
             late_s=round(late_s, 3) if late_s else None,
         )
 
+    @property
+    def _gateway(self) -> GatewayTimeout | None:
+        """What a gateway said; of a write that was read back in vain, to the read."""
+        return self.failure if isinstance(self.failure, GatewayTimeout) else self.link.hearing.gateway
+
     def _heard(self) -> str:
         link, words = self.link, self.link.hearing.words
-        if isinstance(self.failure, GatewayTimeout):
-            return self.failure.message
+        if self._gateway:
+            return self._gateway.message
         if link.hearing.late_s:
             return f"its answers come, but late: {late_words(link.hearing.late_s, link.timeout_s)}"
         heard = f"heard {words}" if words else "nothing heard"
@@ -113,8 +118,8 @@ class Silence:
 
     def _advice(self) -> str:  # noqa: PLR0911  # a way out a case
         link, request, heard = self.link, self.request, self.link.hearing.words
-        if isinstance(self.failure, GatewayTimeout):
-            return str(self.failure.hint)
+        if self._gateway:
+            return str(self._gateway.hint)
         if link.hearing.late_s:
             return f"give --timeout {longer_timeout(link.hearing.late_s):g}"
         if link.hearing.misnumbered:

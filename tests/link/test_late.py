@@ -84,6 +84,32 @@ def test_the_time_out_that_is_told_is_enough(delay_s: float) -> None:
     assert warnings == []
 
 
+class Connection(MemoryTransport):
+    """One over TCP: what is still on its way is lost when it is made anew."""
+
+    def renew(self) -> None:
+        self._coming.clear()
+
+
+@pytest.mark.parametrize("request_", REQUESTS, ids=lambda request: type(request).__name__)
+@pytest.mark.parametrize("delay_s", [0.55, 0.9, 1.1, 1.3, 1.6, 1.9])
+def test_no_late_answer_is_lost_with_its_connection(delay_s: float, request_: Request[Any]) -> None:
+    for retries in range(5):
+        warnings: list[str] = []
+        simulation = build_simulation([1], ladder_words=64, scan_ms=1000 * delay_s, baud=9600)
+        link = Link(
+            Connection(simulation.line(), "tcp://plc:500"),
+            FACON,
+            1,
+            LineSettings(),
+            retries=retries,
+            warn=warnings.append,
+        )
+        error = failure_of(link, request_)
+        said = warnings[0] if error is None else error.message
+        assert "late: after" in said
+
+
 def test_one_that_is_later_than_anybody_listens_is_silent() -> None:
     link = late(30.0, retries=1)
     with pytest.raises(NoAnswer, match="nothing heard"):

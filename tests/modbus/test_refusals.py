@@ -13,6 +13,7 @@ from fatektool.jobs.registers import read_elements
 from fatektool.protocol.commands import Control, ControlDiscrete, ReadRegisters, WriteRegisters
 from fatektool.protocol.elements import Element
 from fatektool.protocol.modbus import ASCII, RTU, TCP, ModbusCodec
+from fatektool.protocol.modbus_data import GATEWAY
 
 from .peer import Peer, Pieces, linked
 
@@ -192,6 +193,9 @@ def test_a_write_that_did_not_leave_the_gateway_is_not_looked_for() -> None:
             linked(slave, TCP).ask(TO_R105)
         assert {asked[0] for asked in slave.asked} == functions
         assert ("whether the PLC took it is not known" in caught.value.message) == (code == 11)
+        assert f"the gateway says: {GATEWAY[code]} (exception {code:02X})" in caught.value.message
+        assert "nothing heard" not in caught.value.message
+        assert "gateway" in str(caught.value.hint)
 
 
 # --- numbers, and bytes that belong to nothing ---------------------------------------------------------
