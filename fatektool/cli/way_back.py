@@ -13,7 +13,7 @@ from click.core import ParameterSource
 
 from fatektool.cli.addressee import agree
 from fatektool.cli.incomplete import write_lines
-from fatektool.errors import RestoreIncomplete
+from fatektool.errors import LineError, RestoreIncomplete
 from fatektool.jobs.snapshot_formats import as_json
 from fatektool.jobs.times import stamp
 from fatektool.program.files import STANDARD, write_new
@@ -67,6 +67,7 @@ class RegisterWrite:
 
         Raises:
             UsageError: not agreed to, or nobody to ask: nothing was written, and no safety snapshot is left.
+            LineError: no answer, the same.
             RestoreIncomplete: the line failed on the way.
         """
         voice.require_answer(yes=yes, unchanged="nothing was written")
@@ -78,18 +79,26 @@ class RegisterWrite:
         try:
             agree(voice, rows, [*self.lines, saved], f"Write {values} into {self.here.name}?", yes=yes)
         except BaseException:  # Ctrl-C too
-            if path is not None:
-                with suppress(OSError):
-                    path.unlink()
+            _remove(path)
             raise
         try:
             return safety, write(safety)
+        except LineError:  # before the first write: after it, it is the next error
+            _remove(path)
+            raise
         except RestoreIncomplete as error:
             headline = f"{self.what}: some of {values} may be written"
             error.details["command"] = self.again
             error.hint = f"the values before: {safety or 'not saved'}; mend the cause, then: {self.again}"
             error.lines = write_lines(error, headline, self.here.name, self.again)
             raise
+
+
+def _remove(path: Path | None) -> None:
+    """Remove a safety snapshot that is the way back of nothing."""
+    if path is not None:
+        with suppress(OSError):
+            path.unlink()
 
 
 def save_safety(present: Snapshot, name: str, folder: Path) -> Path:

@@ -17,9 +17,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from fatektool.errors import LineError, PlcError, RestoreIncomplete, UsageError
+from fatektool.errors import PlcError, UsageError
 from fatektool.jobs.link_table import Change, WritePlan
-from fatektool.jobs.register_writes import NotTaken, write_elements
+from fatektool.jobs.register_writes import NotTaken, write_planned
 from fatektool.jobs.registers import named, read_elements
 from fatektool.jobs.selection import Item
 from fatektool.jobs.snapshot import raw_of, take_snapshot
@@ -160,18 +160,11 @@ def write_modem(plc: Plc, plan: WritePlan, safety: str | None) -> list[NotTaken]
         safety: where the present values lie, for messages.
 
     Raises:
+        LineError: no answer, and nothing was written.
         RestoreIncomplete: the line failed on the way.
     """
-    try:
-        return write_elements(plc, [(change.element, change.after) for change in plan.changes])
-    except (LineError, KeyboardInterrupt) as error:
-        cause = error.message if isinstance(error, LineError) else "interrupted"
-        raise RestoreIncomplete(
-            f"the modem was not set whole ({cause}): some of {len(plan.changes)} values may be written",
-            hint=f"run it again: it writes what is left; the values before lie in {safety or 'no file'}",
-            safety_snapshot=safety,
-            cause=cause,
-        ) from error
+    writes = [(change.element, change.after) for change in plan.changes]
+    return write_planned(plc, writes, safety, failed="the modem was not set whole")
 
 
 def _type(element: Element) -> ValueType:

@@ -10,9 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from fatektool.errors import DataError, LineError, PlcError, RestoreIncomplete, UsageError
+from fatektool.errors import DataError, PlcError, UsageError
 from fatektool.jobs.link_ports import read_words, require_register
-from fatektool.jobs.register_writes import NotTaken, write_elements
+from fatektool.jobs.register_writes import NotTaken, write_planned
 from fatektool.jobs.registers import named
 from fatektool.jobs.selection import Item
 from fatektool.jobs.snapshot import Snapshot, raw_of, take_snapshot
@@ -136,15 +136,13 @@ def write_plan(plc: Plc, plan: WritePlan, safety: str | None) -> list[NotTaken]:
         safety: where the present words lie, for messages.
 
     Raises:
+        LineError: no answer, and nothing was written.
         RestoreIncomplete: the line failed on the way.
     """
-    try:
-        return write_elements(plc, [(change.element, change.after) for change in plan.changes])
-    except (LineError, KeyboardInterrupt) as error:
-        cause = error.message if isinstance(error, LineError) else "interrupted"
-        raise RestoreIncomplete(
-            f"the table was not written whole ({cause}): some of {len(plan.changes)} words may be written",
-            hint=f"run it again: it writes what is left; the words before lie in {safety or 'no file'}",
-            safety_snapshot=safety,
-            cause=cause,
-        ) from error
+    return write_planned(
+        plc,
+        [(change.element, change.after) for change in plan.changes],
+        safety,
+        failed="the table was not written whole",
+        values="words",
+    )

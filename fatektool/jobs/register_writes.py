@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fatektool.errors import PlcRefused, UsageError
+from fatektool.errors import LineError, PlcRefused, RestoreIncomplete, UsageError
 from fatektool.jobs.disabled import read_disabled
 from fatektool.jobs.division import Division, Refusals
 from fatektool.jobs.registers import by_request, named, read_elements, turnaround
@@ -91,6 +91,37 @@ def write_elements(plc: Plc, items: Sequence[tuple[Element, int]]) -> list[NotTa
         )
         for element, wanted in failed
     ]
+
+
+def write_planned(
+    plc: Plc, items: Sequence[tuple[Element, int]], safety: str | None, *, failed: str, values: str = "values"
+) -> list[NotTaken]:
+    """``write_elements``, for what was planned and shown: one error tells of a line that failed on the way.
+
+    Args:
+        plc: the PLC.
+        items: elements with raw, unsigned values.
+        safety: where the present values are saved, for messages.
+        failed: what has not come to its end, such as "the table was not written whole".
+        values: what is written.
+
+    Raises:
+        LineError: no answer; nothing was written, and so with ``KeyboardInterrupt``.
+        RestoreIncomplete: no answer, or an interrupt, after the first write was sent.
+    """
+    sent = plc.link.counters.writes
+    try:
+        return write_elements(plc, items)
+    except (LineError, KeyboardInterrupt) as error:
+        if plc.link.counters.writes == sent:
+            raise
+        cause = error.message if isinstance(error, LineError) else "interrupted"
+        raise RestoreIncomplete(
+            f"{failed} ({cause}): some of {len(items)} {values} may be written",
+            hint=f"run it again: it writes what is left; the {values} before: {safety or 'not saved'}",
+            safety_snapshot=safety,
+            cause=cause,
+        ) from error
 
 
 class _Writer:

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING
 
-from fatektool.errors import DataError, LineError, RestoreIncomplete
-from fatektool.jobs.register_writes import NotTaken, write_elements
+from fatektool.errors import DataError
+from fatektool.jobs.register_writes import NotTaken, write_planned
 from fatektool.jobs.selection import Item, places_of
 from fatektool.jobs.snapshot import Snapshot, raw_of, take_snapshot
 from fatektool.jobs.snapshot_spec import SpecItem
@@ -139,16 +139,7 @@ def apply_plan(plc: Plc, plan: ApplyPlan, safety: str | None) -> list[NotTaken]:
         safety: where the present values lie, for messages.
 
     Raises:
+        LineError: no answer, and nothing was written.
         RestoreIncomplete: the line failed on the way.
     """
-    try:
-        return write_elements(plc, plan.writes)
-    except (LineError, KeyboardInterrupt) as error:
-        cause = error.message if isinstance(error, LineError) else "interrupted"
-        count = len(plan.changes)
-        raise RestoreIncomplete(
-            f"the snapshot was not applied whole ({cause}): some of {count} values may be written",
-            hint=f"run it again: it writes what is left; the values before lie in {safety or 'no file'}",
-            safety_snapshot=safety,
-            cause=cause,
-        ) from error
+    return write_planned(plc, plan.writes, safety, failed="the snapshot was not applied whole")

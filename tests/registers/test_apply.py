@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from fatektool.cli import run
-from fatektool.errors import DataError
+from fatektool.errors import DataError, NoAnswer
 from fatektool.jobs.registers import read_elements
 from fatektool.jobs.selection import parse_items
 from fatektool.jobs.snapshot import load_snapshot, take_all
@@ -24,6 +24,7 @@ from .plant import Plant, cut_in_write, error_of, is_write, recorded, small, sna
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from fatektool.client import Plc
     from tests.plcs import Simulated
 
 
@@ -281,13 +282,29 @@ def test_an_interrupt_in_the_middle(plant: Plant, place: Path, monkeypatch: pyte
     (place / "a.json").write_text(as_json(snapshot_of("R0-R99")))
     plant.write("R0-R99=2")
 
-    def interrupted(*_: object) -> None:
+    def interrupted(plc: Plc, _: object) -> None:
+        plc.link.counters.writes += 1
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("fatektool.jobs.snapshot_apply.write_elements", interrupted)
+    monkeypatch.setattr("fatektool.jobs.register_writes.write_elements", interrupted)
     done = plant.cli("snapshot", "apply", "a.json", "--yes")
     assert done.code == 6
     assert "  cause          interrupted" in done.err.splitlines()
+
+
+def test_no_answer_before_the_first_write(plant: Plant, place: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing was written: that is a line error, and there is nothing to go back to."""
+    (place / "a.json").write_text(as_json(snapshot_of("R0")))
+    plant.write("R0=2")
+
+    def silent(*_: object) -> None:
+        raise NoAnswer("no answer from station 1")
+
+    monkeypatch.setattr("fatektool.jobs.register_writes.write_elements", silent)
+    done = plant.cli("snapshot", "apply", "a.json", "--yes")
+    assert done.code == 3
+    assert "may be written" not in done.err
+    assert not safety(place)
 
 
 @pytest.mark.parametrize(
