@@ -22,9 +22,16 @@ if TYPE_CHECKING:
     from fatektool.ladder.forms import Form
 
 _LD: Final = 0x60
+_RESET_AND_SET: Final = (0x00, 0x10)
+_PREFIX: Final = 0xE0
 _END: Final = 0xFFFF
 _LABEL: Final = 0xEF
 """The low byte of a label; below it stand instructions of one word, with a prefix two, above it functions."""
+
+_X: Final = range(0x100)
+_TR: Final = range(0x400, 0x428)
+_LAST_LIKE_D: Final = 0x48
+"""ORG of X, Y, T, C or S at an even address is D0 to D1023, too: ``9041`` is D200 and ORG Y144."""
 
 
 def _index(head_words: int) -> list[tuple[tuple[int, ...], dict[tuple[int, ...], Form]]]:
@@ -149,4 +156,25 @@ def _begins(words: Sequence[int], place: int) -> bool:
     if behind == len(words):
         return False
     second = _instruction(words, behind)
-    return second is None or (not second.form.begins and second.bit not in OUTPUTS)
+    if second is None:  # a function or mark that is not known; below stand registers, and FFFF is -1
+        return words[behind] & 0xFF >= _PREFIX and words[behind] != _END
+    return _can_follow(second, like_a_register=words[place] & 0x01FF < _LAST_LIKE_D)
+
+
+def _can_follow(second: Instruction, *, like_a_register: bool) -> bool:
+    """True if this can stand behind the contact that begins a network.
+
+    Args:
+        second: what the next words look like.
+        like_a_register: True if the contact's word is a much used register, too: then OUTR and OUTS, which
+            constants and registers look like, prove nothing.
+    """
+    bit = second.bit
+    if second.form.begins or bit in OUTPUTS:
+        return False
+    if bit is None or second.form.head_words > 1:
+        return True
+    op = second.form.fixed[0]
+    if op == _LD:
+        return bit not in _TR  # nothing is kept there yet
+    return not (second.form.writes and (bit in _X or (like_a_register and op in _RESET_AND_SET)))

@@ -54,7 +54,7 @@ _LEAST_BYTES: Final = 0x400
 _SURE: Final = 100
 _LIKELY: Final = 40
 _WEAK: Final = 10
-_TRUST: Final = (1, 10)
+_TRUST: Final = (1, 10, 100)
 """How much the known words count: as the rest does, then, for a memory that is full, against all of it."""
 _SIGNATURE_BYTES: Final = 8
 _MARK_FBE: Final = 0x67FC

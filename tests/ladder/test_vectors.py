@@ -58,6 +58,17 @@ def test_there_are_enough_vectors() -> None:
         ((0x3FF4, 0x9041, 0x9241, 0x0040, 0x00C1), "?? 3FF4 9041 9241|ORG X0|OUT Y0"),
         ((0x3FF4, 0x9041, 0xFC6F, 0x00C1, 0xEB5F), "?? 3FF4 9041 FC6F 00C1|ORG OPEN"),
         ((0x3FF4, 0x1234, 0x0040, 0x3FF4, 0x0040, 0x00C1), "?? 3FF4 1234|ORG X0|?? 3FF4|ORG X0|OUT Y0"),
+        # D200 and 5, R10, R3000, -1, or 36.0: none is ORG Y144 or ORG T16 with a coil, or with nothing known.
+        ((0x3FF4, 0x9041, 0x0500, 0x0140, 0x00C1), "?? 3FF4 9041 0500|ORG X1|OUT Y0"),
+        ((0x3FF4, 0x9041, 0x140A, 0x0140, 0x00C1), "?? 3FF4 9041 140A|ORG X1|OUT Y0"),
+        ((0x3FF4, 0x9041, 0x7021, 0x0140, 0x00C1), "?? 3FF4 9041 7021|ORG X1|OUT Y0"),
+        ((0x3FF4, 0x9041, 0xFFFF, 0x0140, 0x00C1), "?? 3FF4 9041 FFFF|ORG X1|OUT Y0"),
+        ((0x3FF4, 0x1042, 0x0000, 0x0140, 0x00C1), "?? 3FF4 1042 0000|ORG X1|OUT Y0"),
+        ((0x3FF4, 0x9041, 0x0064, 0x00C1, 0x0140, 0x00C1), "?? 3FF4 9041 0064 00C1|ORG X1|OUT Y0"),
+        # An odd address is no register, and D1032, which M0 would be, is seldom used.
+        ((0x3FF4, 0x140A, 0x0140, 0x0811), "?? 3FF4 140A|ORG X1|OUTS Y8"),
+        ((0x3FF4, 0x140A, 0x1048, 0x1118), "?? 3FF4 140A|ORG M0|OUTS M1"),
+        ((0x3FF4, 0x140A, 0x0240, 0x84EE, 0x00C1), "?? 3FF4 140A|ORG X2|?? 84EE|OUT Y0"),
         ((0x1BEF, 0xFFFF, 0x002A, 0x0000), "~FUN 65 LBL \\x1B\\x1FF\\x7FT"),
         ((0x84EE, 0x00C1), "?? 84EE|OUT Y0"),
         ((0x81EE, 0x0040), "|ORG X0"),

@@ -33,6 +33,12 @@ def test_all_memory_full_but_the_header() -> None:
     assert (found.memory.image, found.memory.other) == full
 
 
+def test_a_memory_full_of_the_same_network() -> None:
+    image = image_of([0x0040, 0x00C1] * (0x4EFF // 2))
+    full = Image(image.image, random.Random(3).randbytes(len(image.other)))  # noqa: S311  # a fixed seed
+    assert Project.parse(project(full, FBS)).memory.image == image.image
+
+
 def test_only_xor_of_both_keys_counts() -> None:
     data = bytes(5000)
     key = key_of(3)
