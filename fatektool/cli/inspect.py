@@ -8,11 +8,10 @@ import click
 
 from fatektool.cli.backup import require_raw_name
 from fatektool.cli.documents import inspect_document
-from fatektool.cli.image_words import warn_of_image
 from fatektool.cli.options import PATH, voice_options
 from fatektool.cli.output import Voice, table
 from fatektool.cli.pairs import together
-from fatektool.cli.program_files import encoding_option, program_file, require_comments
+from fatektool.cli.program_files import encoding_option, program_file, require_comments, warn_of_program
 from fatektool.cli.project_view import project_document, project_rows, sum_words
 from fatektool.program.files import write_whole
 
@@ -36,8 +35,7 @@ def inspect_command(file: Path, voice: Voice, *, raw: Path | None, force: bool, 
     on_file = program_file(file, voice, encoding)
     require_comments(None, on_file)
     found = on_file.backup
-    if on_file.project is None or on_file.header.family is not None:  # an FBE's image has no known header
-        warn_of_image(on_file.program, voice)
+    warn_of_program(on_file, voice)
     data = on_file.program.data if on_file.project is None else on_file.project.memory.image
     if raw is not None:
         write_whole(raw, data, overwrite=force)

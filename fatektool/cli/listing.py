@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fatektool.cli.differences import beside
-from fatektool.cli.image_words import warn_of_image
 from fatektool.cli.inventory_file import inventory_option
 from fatektool.cli.options import PATH, voice_options
 from fatektool.cli.program_files import (
     comments_beside,
     comments_options,
     program_file,
-    warn_of_unknown,
+    warn_of_code,
 )
 from fatektool.cli.report import report_option, write_report
 from fatektool.errors import UsageError
@@ -91,9 +90,7 @@ def listing_command(
     texts = comments_beside(found, comments, inventory, voice, encoding)
     in_lines = NO_COMMENTS if words and comments is None else texts
     networks = _chosen(found.networks, ranges)
-    if found.backup is not None:
-        warn_of_image(found.program, voice)
-    warn_of_unknown(found, voice)
+    warn_of_code(found, voice)
     document = listing_document(found, networks, texts)
     if report is not None:
         from fatektool.report.listing import listing_report

@@ -167,12 +167,23 @@ def comments_of_entry(entry: PlcEntry, voice: Voice, encoding: str | None = None
     return {} if found is None else found.elements
 
 
-def warn_of_unknown(found: ProgramFile, voice: Voice) -> None:
-    """Say how much of the code is not understood."""
+def warn_of_program(found: ProgramFile, voice: Voice) -> None:
+    """Say what does not hold of a file's program and what is odd, of what is known of its header."""
+    from fatektool.cli.image_words import warn_of_image
+
+    if found.project is None or found.header.family is not None:  # an FBE's image has no known header
+        warn_of_image(found.program, voice)
+
+
+def warn_of_code(found: ProgramFile, voice: Voice) -> None:
+    """The same before its code is shown, with how much of that is not understood."""
     code = found.require_code()
+    warn_of_program(found, voice)
     unknown = code.unknown_words
     if unknown:
         voice.warn(
             f"{found.name}: {unknown} of {len(code.words)} words of code are not understood and shown as "
             "they are (??); behind them reading went on at the next word that begins a network"
         )
+    if not code.words:
+        voice.say(f"{found.name}: the program has no code")

@@ -12,7 +12,7 @@ from fatektool.cli.program_files import (
     comments_beside,
     comments_options,
     program_file,
-    warn_of_unknown,
+    warn_of_code,
 )
 from fatektool.errors import UsageError
 from fatektool.ladder.addresses import spans_of
@@ -61,7 +61,7 @@ def xref_command(
     found = program_file(file, voice, encoding)
     texts = comments_beside(found, comments, inventory, voice, encoding).elements
     code = found.require_code()
-    warn_of_unknown(found, voice)
+    warn_of_code(found, voice)
     reference = CrossReference(code)
     shown = asked or reference.elements
     findings = [each for each in reference.findings() if not asked or each.element in asked]

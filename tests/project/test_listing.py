@@ -206,3 +206,20 @@ def test_latin_1_is_said(cli: Cli) -> None:
     project_file("press.pdw", IMAGE, elements={"X0": b"\x81\x20\xff\x98"})
     assert "no code page decodes all comments" in cli("listing", "press.pdw").err
     assert "no code page" not in cli("listing", "press.pdw", "--encoding", "cp1252").err
+
+
+@pytest.mark.parametrize("command", ["listing", "xref", "inspect"])
+def test_a_sum_that_does_not_hold_is_a_warning(cli: Cli, command: str) -> None:
+    image = image_of(MAIN, SUB, labels=[0x4927, 0x002A])
+    other = bytearray(image.other)
+    other[0x7FE] ^= 1  # the last label
+    project_file("press.pdw", image._replace(other=bytes(other)))
+    done = cli(command, "press.pdw")
+    assert done.code == 0
+    assert "warning: checksum of the labels: expected 4951 as stored, got 4952" in done.err
+
+
+def test_a_program_without_code_says_so(cli: Cli) -> None:
+    project_file("press.pdw", image_of([]))
+    done = cli("listing", "press.pdw")
+    assert (done.code, done.out, done.err) == (0, "", "press.pdw: the program has no code\n")
