@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import zip_longest
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from fatektool.ladder.alignment import align
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
     from fatektool.ladder.instruction import Instruction
     from fatektool.ladder.networks import Code, Network
 
-_MOST_PAIRS: Final = 4_000
+_MOST_PAIRS: Final = 100_000
 
 
 class Change(StrEnum):
@@ -132,8 +133,15 @@ def _pairs(old: Sequence[Network], new: Sequence[Network]) -> Iterator[tuple[Net
 def _in_order(
     old: Sequence[Network], new: Sequence[Network]
 ) -> Iterator[tuple[Network | None, Network | None]]:
-    for number in range(max(len(old), len(new))):
-        yield old[number] if number < len(old) else None, new[number] if number < len(new) else None
+    """The first with the first, where there are too many to hold each against each."""
+    for here, there in zip_longest(old, new):
+        if here is None or there is None:
+            yield here, there
+        elif here.unit != there.unit:
+            yield here, None
+            yield None, there
+        elif here.words != there.words:
+            yield here, there
 
 
 class _Looks(NamedTuple):

@@ -67,6 +67,25 @@ def test_one_put_in_beside_one_that_changed() -> None:
     assert summary(found) == "N0050 added, N0051 changed"
 
 
+def test_one_put_in_where_all_others_changed() -> None:
+    """An element that is used everywhere was exchanged, and a network was put in among them."""
+    old = [network(number) for number in range(250)]
+    new = [[*each[:2], 0xB689, each[3]] for each in old]
+    found = compare_code(code(*old), code(*new[:100], [0x0042, 0x00C2], *new[100:]))
+    assert [each for each in shown(found) if each[0] != "changed"] == [("added", None, 100)]
+    assert len(found) == 251
+
+
+def test_of_too_many_to_match_none_is_named_that_did_not_change() -> None:
+    here, there, other = [0x0040, 0x00C1], [0x0140, 0x02C1], [0x0240, 0x03C1]
+    old = Code.of(here * 2000, other * 2000)
+    new = Code.of([*here, *there] * 500, [*here, *there] * 500)
+    found = compare_code(old, new)
+    for each in found:
+        assert each.a is None or each.b is None or each.a.unit == each.b.unit
+        assert any(line.sign != " " for line in each.diff)
+
+
 def test_another_program_altogether() -> None:
     found = compare_code(code([0x0040, 0x00C1]), code([0x1448, 0x82FC, 0x3204]))
     assert shown(found) == [("added", None, 0), ("removed", 0, None)] or shown(found) == [
