@@ -18,6 +18,7 @@ _STATES = {
     "pages_uncertain": "uncertain",
     "pages_old": "the old program",
 }
+_LONGEST_NAME = 24
 
 
 def restore_lines(error: RestoreIncomplete, plc: str, command: str) -> list[str]:
@@ -46,10 +47,14 @@ def _restore_facts(error: RestoreIncomplete, plc: str) -> Iterator[tuple[str, ob
     yield "PLC", f"{plc}, in STOP; it must not RUN"
     yield "cause", details["cause"]
     unread = set(details["pages_unread"])
-    for key, holds in _STATES.items():
-        pages = [page for page in details[key] if key == "pages_unread" or page not in unread]
-        if pages:
-            yield f"page {ranges(pages)}", holds
+    states = {
+        holds: [page for page in details[key] if key == "pages_unread" or page not in unread]
+        for key, holds in _STATES.items()
+    }
+    told = [(f"page {ranges(pages)}", holds) for holds, pages in states.items() if pages]
+    if any(len(pages) > _LONGEST_NAME for pages, _ in told):  # scattered pages would push all facts aside
+        told = [(holds, pages) for pages, holds in told]
+    yield from told
     yield "old program", details["safety_backup"] or "not saved"
 
 

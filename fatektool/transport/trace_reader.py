@@ -77,8 +77,8 @@ def _read_ndjson(data: bytes, name: str) -> Iterator[TraceRecord]:
                 str(entry.get("protocol", "")),
             )
         except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-            said = error if isinstance(error, EncodingError) else type(error).__name__
-            raise DataError(f"{name}: line {number}: no trace record: {said}", hint=_HINT) from error
+            said = f": {error}" if isinstance(error, EncodingError) else ""
+            raise DataError(f"{name}: line {number}: no trace record{said}", hint=_HINT) from error
         if record.direction not in {SENT, RECEIVED}:
             raise DataError(f"{name}: line {number}: expected direction tx or rx", hint=_HINT)
         if not _is_time(record.time):

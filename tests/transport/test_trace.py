@@ -421,6 +421,14 @@ def test_a_damaged_packet_is_named(at: int, byte: int) -> None:
     assert caught.value.exit_code == 5
 
 
+def test_a_text_of_something_else() -> None:
+    for data in (b"root:x:0:0\n", b"{\n", b"[]\n", b'{"time": 1}\n'):
+        with pytest.raises(DataError) as caught:
+            list(read_trace(data, "x"))
+        assert caught.value.message == "x: line 1: no trace record"
+        assert "that --trace wrote" in str(caught.value.hint)
+
+
 def test_a_capture_of_something_else() -> None:
     data = bytearray(written(".pcap"))
     data[20] = 1  # Ethernet
