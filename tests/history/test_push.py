@@ -21,6 +21,7 @@ from dulwich.web import make_wsgi_chain
 
 from fatektool.errors import PushFailed
 from fatektool.history.push import push
+from fatektool.history.push.outcome import failed, without_secrets
 
 from .books import GIT, ONE, THREE, TWO, Book, git
 
@@ -143,6 +144,24 @@ def test_one_that_is_ahead(book: Book, nas: Path, tmp_path: Path) -> None:
     push(tmp_path / "copy", str(nas))
     with pytest.raises(PushFailed, match="has gone another way"):
         push(book.folder, str(nas))
+
+
+@pytest.mark.parametrize(
+    ("url", "shown"),
+    [
+        ("https://user:secret@host/x", "https://host/x"),
+        ("https://token@host/x", "https://host/x"),
+        ("https://host/x@y", "https://host/x@y"),
+        ("ssh://git@host/x", "ssh://git@host/x"),
+        ("ssh://git:secret@host:22/x", "ssh://git@host:22/x"),
+        ("git@host:x", "git@host:x"),
+    ],
+)
+def test_what_is_shown_of_a_remote(url: str, shown: str) -> None:
+    """No secret, and what is needed to reach it: without its user an ssh remote is another one."""
+    error = failed(url, f"fatal: {url!r} is not there", f"git push {without_secrets(url)}")
+    assert error.message == f"could not push to {shown}: fatal: {shown!r} is not there"
+    assert str(error.hint).endswith(f"git push {shown}")
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from fatektool.errors import PushFailed
 if TYPE_CHECKING:
     from pathlib import Path
 
-_SECRET: Final = re.compile(r"://[^/@\s]*@")
+_LOGIN: Final = re.compile(r"(\w*)://([^/@:\s]*)(?::[^/@\s]*)?@")
 _WHOLE: Final = "the history here is whole, and the next push brings all of it"
 
 
@@ -20,7 +20,7 @@ class Pushed:
     """What became of a push.
 
     Attributes:
-        remote: where to, without user names and passwords.
+        remote: where to, without what may be a secret.
         revision: the newest commit there now, 40 hex digits; None if there is nothing to push yet.
         sent: False if it had all already.
     """
@@ -31,8 +31,8 @@ class Pushed:
 
 
 def without_secrets(text: str) -> str:
-    """A text whose URLs name no user and no password."""
-    return _SECRET.sub("://", text)
+    """A text whose URLs name no password, and no user but that of ssh: elsewhere that may be a token."""
+    return _LOGIN.sub(lambda url: f"ssh://{url[2]}@" if url[1] == "ssh" else f"{url[1]}://", text)
 
 
 def failed(remote: str, reason: str, next_step: str) -> PushFailed:
