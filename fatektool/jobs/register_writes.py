@@ -139,9 +139,9 @@ class _Writer:
         if not left:
             return {}
         groups = by_request(left, self._failed)
-        unread = read_elements(self._plc, left).errors  # what cannot be read is not written either
+        unread = read_elements(self._plc, left).errors  # what cannot be read is not tried alone
         refusals = Refusals(
-            {element: f"not tried, as it cannot be read either: {said}" for element, said in unread.items()}
+            {element: f"refused, and it cannot be read either: {said}" for element, said in unread.items()}
         )
         division = Division(wanted, self._write_together, self._write_alone, refusals)
         for group in groups:

@@ -110,7 +110,7 @@ def test_write_says_what_did_not_take(plant: Plant) -> None:
     where = f"station 1 on {plant.target} (FBE, 13K steps, STOP)"
     assert done.out == f"2 of 8 elements written and read back\n{where}\n"
     assert (
-        "warning: R9000: did not take: expected 1: not tried, as it cannot be read either: the PLC refused"
+        "warning: R9000: did not take: expected 1: refused, and it cannot be read either: the PLC refused"
         in done.err
     )
 
