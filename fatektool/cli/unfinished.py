@@ -70,7 +70,7 @@ def warn_of_unfinished(target: str, station: int, voice: Voice) -> None:
     if found is None:
         voice.warn(f"this PLC's restore is unfinished, and its record cannot be read: {path}")
         return
-    voice.warn("\n".join(_lines(found)))
+    voice.warn("\n".join(_lines(found, path)))
 
 
 def unfinished_document(target: str, station: int) -> dict[str, Any] | None:
@@ -80,12 +80,14 @@ def unfinished_document(target: str, station: int) -> dict[str, Any] | None:
     return None if found is None else found.document()
 
 
-def _lines(found: Unfinished) -> list[str]:
+def _lines(found: Unfinished, path: str) -> list[str]:
+    """The record for a person. It names a port, behind which another PLC may be by now."""
     return [
         "this PLC's restore is unfinished: it must not RUN",
         f"  begun        {found.time}",
         f"  file         {found.file}",
         f"  old program  {found.safety_backup or 'not saved'}",
+        f"  other PLC?   if another one is connected now, do not finish it here, and delete {path}",
         "  to finish it:",
         found.command,
     ]

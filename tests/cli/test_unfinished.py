@@ -50,7 +50,11 @@ def test_who_talks_to_it_next_is_warned(press: Press, cli: Cli, door: Door, stat
         assert lines[at + 1].startswith("  begun        20")
         assert lines[at + 2] == f"  file         {press.new}"
         assert lines[at + 3] == f"  old program  {safety}"
-        assert lines[at + 4 : at + 6] == ["  to finish it:", again], words
+        assert lines[at + 4].startswith(
+            "  other PLC?   if another one is connected now, do not finish it here"
+        )
+        assert lines[at + 4].endswith(f", and delete {record}")
+        assert lines[at + 5 : at + 7] == ["  to finish it:", again], words
         assert record.exists()
     checked = cli("check", "--expect", "any", "-p", door.target)
     assert checked.code == 2
