@@ -116,7 +116,9 @@ def test_a_command_that_is_interrupted(place: Path, suffix: str, number: signal.
     assert command.returncode == 130
     pages = [record.data for record in records(trace) if record.data[:5] == b"\x02014F"]
     assert any(page[5:9] == b"000A" for page in pages)  # it may have gone on before the signal came
-    assert process("decode", trace).code == 0
+    decoded = process("decode", trace)
+    # The interrupt may have come within an answer: that one is cut off, and no other.
+    assert (decoded.code, decoded.out.count("fault:")) in {(0, 0), (5, 1)}
 
 
 def test_a_command_that_is_killed_keeps_all_but_the_last_record(place: Path) -> None:
