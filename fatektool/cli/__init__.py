@@ -74,10 +74,10 @@ def _run(words: list[str]) -> int:  # noqa: PLR0911  # a way out a class of erro
         return failed(error, as_json=as_json)
     except click.ClickException as error:
         return failed(_usage(error), as_json=as_json)
-    except (click.Abort, KeyboardInterrupt):
+    except (click.Abort, KeyboardInterrupt) as stop:
         if sys.stderr.isatty():
             tell("")  # the terminal shows ^C, and no new line
-        return failed(Interrupted("interrupted"), as_json=as_json)
+        return failed(Interrupted(": ".join(["interrupted", *map(str, stop.args)])), as_json=as_json)
     except BrokenPipeError:  # a pipe of somebody else's
         _drop_output()
         return CUT_SHORT

@@ -187,9 +187,14 @@ def agree(
 
     Raises:
         UsageError: not agreed to, or nobody to ask.
+        KeyboardInterrupt: Ctrl-C at the question; bears ``unchanged``.
     """
     voice.require_answer(yes=yes)
     for line in (*table(rows), *lines):
         voice.say(line)
-    if not voice.confirm(question, yes=yes):
+    try:
+        agreed = voice.confirm(question, yes=yes)
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(unchanged) from None
+    if not agreed:
         raise UsageError(f"not agreed to: {unchanged}")

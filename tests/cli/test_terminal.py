@@ -71,7 +71,8 @@ def test_an_answer(press: Press, command: str, keys: str, code: int) -> None:
     assert press.running == (command == "stop")
     assert "Traceback" not in terminal.text
     if code == 130:
-        assert last == "fatektool: interrupted"
+        stays = {"restore": "the PLC's program is unchanged", "run": "the PLC stays in STOP"}
+        assert last == f"fatektool: interrupted: {stays.get(command, 'the PLC stays in RUN')}"
     else:
         assert "fatektool: not agreed to: " in terminal.text
     if "maybe" in keys:
