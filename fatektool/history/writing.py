@@ -69,7 +69,8 @@ def writing(folder: Path, wait_s: float, waiting: Callable[[str], None] = no_not
     """
     try:
         if not folder.is_dir():
-            folder.mkdir(FOLDER_MODE)
+            with contextlib.suppress(FileExistsError):  # another process was faster
+                folder.mkdir(FOLDER_MODE)
             sync_folder(folder.parent)
         if not is_repository(folder):
             _require_ours(folder)

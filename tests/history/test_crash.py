@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
@@ -16,9 +16,6 @@ from fatektool.history.writing import writing
 
 from .books import Book, git
 from .crash import ONE, TWO
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="ends processes by fork and signal")
 
@@ -92,3 +89,16 @@ def test_threads_may_share_one(book: Book) -> None:
     assert all(each.revision for each in found)
     assert book.commits == 16
     book.fsck()
+
+
+def test_a_folder_that_another_process_makes_meanwhile(book: Book, monkeypatch: pytest.MonkeyPatch) -> None:
+    make = Path.mkdir
+
+    def second(folder: Path, mode: int = 0o777, *, exist_ok: bool = False) -> None:
+        if folder == book.folder and not folder.exists():
+            make(folder)
+        make(folder, mode, exist_ok=exist_ok)
+
+    monkeypatch.setattr(Path, "mkdir", second)
+    book.record("press", ONE)
+    assert book.commits == 1
