@@ -1,9 +1,11 @@
-"""Words of code: each comes out in one instruction, and all of them come back."""
+"""Words of code: each comes out in one instruction, and all of them come back, from a circuit too."""
 
 from __future__ import annotations
 
 import struct
 
+from fatektool.ladder.circuit.reading import NoCircuit, circuit_of
+from fatektool.ladder.circuit.writing import instructions_of
 from fatektool.ladder.cross_reference import CrossReference
 from fatektool.ladder.decode import encode
 from fatektool.ladder.networks import Code
@@ -20,3 +22,9 @@ def one_input(data: bytes) -> None:
         list(instruction.accesses)
     for finding in CrossReference(code).findings():
         assert finding.where
+    for network in code.networks:
+        circuit = circuit_of(network)
+        if isinstance(circuit, NoCircuit):
+            assert circuit.reason.isprintable()
+        else:
+            assert instructions_of(circuit) == network.instructions

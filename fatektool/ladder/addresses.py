@@ -105,6 +105,8 @@ _BYTES: Final = (
 _BIT_STARTS: Final = [row.first for row in _BITS]
 _BYTE_STARTS: Final = [row.first for row in _BYTES]
 
+STORES: Final = range(0x400, 0x428)
+"""Bit addresses of TR: with OUT what a line carries is stored, with LD it is taken up again."""
 DRAWING: Final = range(0xFE2, 0xFFC)
 """Bit addresses that are a wire (``SHORT``) or a gap (``OPEN``); which of them only says how it is drawn."""
 _SURE_DRAWING: Final = range(0xFE2, 0xFF0)
@@ -120,7 +122,7 @@ def bit_name(address: int) -> Name | None:
     number = row.number_at(address)
     if number is None:
         return None
-    if row.symbol == "TR":  # a place of the ladder while it is worked through: no PLC can be asked for it
+    if address in STORES:  # no PLC can be asked for it
         return Name(f"TR {number}", row.grade, None)
     return Name(f"{row.symbol}{number}", row.grade, f"{row.symbol}{number}")
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
-from fatektool.ladder.addresses import DRAWING, LAST_BIT, OUTPUTS
+from fatektool.ladder.addresses import DRAWING, LAST_BIT, OUTPUTS, STORES
 from fatektool.ladder.forms import Shape
 from fatektool.ladder.instruction import Instruction, unknown
 from fatektool.ladder.operands import value_of
@@ -29,7 +29,6 @@ _LABEL: Final = 0xEF
 """The low byte of a label; below it stand instructions of one word, with a prefix two, above it functions."""
 
 _X: Final = range(0x100)
-_TR: Final = range(0x400, 0x428)
 _LAST_LIKE_D: Final = 0x48
 """ORG of X, Y, T, C or S at an even address is D0 to D1023, too: ``9041`` is D200 and ORG Y144."""
 
@@ -176,5 +175,5 @@ def _can_follow(second: Instruction, *, like_a_register: bool) -> bool:
         return True
     op = second.form.fixed[0]
     if op == _LD:
-        return bit not in _TR  # nothing is kept there yet
+        return bit not in STORES  # nothing is kept there yet
     return not (second.form.writes and (bit in _X or (like_a_register and op in _RESET_AND_SET)))

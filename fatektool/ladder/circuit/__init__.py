@@ -1,0 +1,1 @@
+"""A network as a circuit: series, parallels, outputs and boxes. No I/O."""

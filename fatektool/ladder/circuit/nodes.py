@@ -1,0 +1,184 @@
+"""What a circuit is made of.
+
+::
+
+    Circuit   lines, in the order of their instructions
+    Line      parts from left to right: what conducts, and what hangs on the line where it has come to
+    Series    one behind the other        Parallel   one beside the other
+    Block     a part that was loaded for itself, with the ANDLD or ORLD that joins it to what is before
+    Leaf      one instruction: a contact, a comparison, a wire, a coil ..
+    Box       a function: the lines that enter it beside the one on which it hangs, and those that leave it
+
+``ORG X0, OR Y4, AND NOT M421, OUT Y4`` is ``Line(Parallel(X0, Y4), M421, Y4)``: the coil is a part of the
+line, and what stands behind it goes on from where it hangs.
+
+A line carries from left to right. One that begins with a contact begins at the rail, one with ``LD TR n``
+where ``OUT TR n`` stands in another line, one with ``FO n`` at an output of its box, one with STP or FROM at
+a step. Within a block ``LD TR n`` is a contact: it conducts what was stored.
+
+Every leaf has the number of its instruction, which nothing else in the program has. What is known of an
+instruction (the state of its element, a change) is kept beside the circuit under that number.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
+
+from fatektool.ladder.addresses import DRAWING, STORES, bit_name
+from fatektool.ladder.circuit.roles import Role, role_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from fatektool.ladder.instruction import Instruction
+
+
+@dataclass(frozen=True, slots=True)
+class Leaf:
+    """One instruction.
+
+    Attributes:
+        number: the instruction's, through the whole program.
+        instruction: what it is.
+    """
+
+    number: int
+    instruction: Instruction
+
+    @property
+    def role(self) -> Role:
+        """What it does."""
+        return role_of(self.instruction)
+
+    @property
+    def is_wire(self) -> bool:
+        """True for SHORT: it always conducts."""
+        return self._is_drawing and not self.is_inverted
+
+    @property
+    def is_gap(self) -> bool:
+        """True for OPEN: it never conducts."""
+        return self._is_drawing and self.is_inverted
+
+    @property
+    def is_inverted(self) -> bool:
+        """True for NOT."""
+        return " NOT " in self.instruction.form.text
+
+    @property
+    def edge(self) -> str:
+        """``TU`` or ``TD`` for a contact that conducts for a scan; else empty."""
+        words = self.instruction.form.text.split()
+        return words[1] if len(words) > 2 and words[1] in {"TU", "TD"} else ""
+
+    @property
+    def element(self) -> str | None:
+        """The element of a contact or coil; None for what has none."""
+        bit = self.instruction.bit
+        name = None if bit is None else bit_name(bit)
+        return None if name is None else name.element
+
+    @property
+    def store(self) -> int:
+        """The n of ``TR n``."""
+        bit = self.instruction.bit
+        assert bit is not None  # noqa: S101  # asked of such leaves alone
+        return bit - STORES.start
+
+    @property
+    def _is_drawing(self) -> bool:
+        return self.instruction.bit is not None and self.instruction.bit in DRAWING
+
+
+@dataclass(frozen=True, slots=True)
+class Series:
+    """Parts one behind the other: it conducts where all do. Behind the first stand leaves and blocks."""
+
+    parts: tuple[Node, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Parallel:
+    """Branches one beside the other: it conducts where one does. Behind the first stand leaves and blocks."""
+
+    branches: tuple[Node, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """A part that is worked out for itself before it is joined to what is before it.
+
+    Attributes:
+        body: it.
+        join: the ANDLD or ORLD.
+    """
+
+    body: Node
+    join: Leaf
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """A function.
+
+    Attributes:
+        function: its instruction.
+        inputs: the lines that enter it below the one on which it hangs.
+        outputs: the lines that begin at its outputs, and those that branch off from these.
+    """
+
+    function: Leaf
+    inputs: tuple[Line, ...] = ()
+    outputs: tuple[Line, ...] = ()
+
+
+Node: TypeAlias = Leaf | Series | Parallel | Block
+Part: TypeAlias = Node | Box
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A line, from where it begins to where it ends."""
+
+    parts: tuple[Part, ...]
+
+    @property
+    def head(self) -> Leaf | None:
+        """Its first instruction, if that stands alone and not in a parallel; else None."""
+        first = self.parts[0]
+        if isinstance(first, Box):
+            return first.function
+        return first if isinstance(first, Leaf) else None
+
+
+@dataclass(frozen=True, slots=True)
+class Circuit:
+    """A network's lines."""
+
+    lines: tuple[Line, ...]
+
+    @property
+    def leaves(self) -> Iterator[Leaf]:
+        """Its instructions, in the order of the code."""
+        for line in self.lines:
+            yield from leaves_of(line)
+
+
+def leaves_of(part: Part | Line) -> Iterator[Leaf]:
+    """The instructions of a part or a line, in the order of the code."""
+    match part:
+        case Leaf():
+            yield part
+        case Series(parts) | Line(parts) | Parallel(parts):
+            for each in parts:
+                yield from leaves_of(each)
+        case Block(body, join):
+            yield from leaves_of(body)
+            yield join
+        case Box(function, inputs, outputs):
+            for line in inputs:
+                yield from leaves_of(line)
+            yield function
+            for line in outputs:
+                yield from leaves_of(line)

@@ -1,0 +1,48 @@
+"""The inputs and outputs of functions: how many, and what the vendor calls them.
+
+Of a function that is not here the code tells how many lines enter it, and FO n which outputs are used. The
+names are from:
+
+    print    a ladder that the vendor's program printed
+    manual   the FBs and FB manuals, The Format of Function Instructions, and chapter 13
+    field    published notes of programs in which a single thing was changed
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from fatektool.ladder.forms import Form
+
+
+@dataclass(frozen=True, slots=True)
+class Pins:
+    """The names of a function's inputs, from the first line that enters it, and of its outputs FO 0 on."""
+
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+
+
+_TIMER: Final = Pins(("EN",), ("TUP",))  # print
+_LINK: Final = Pins(("EN", "PAU", "ABT"), ("ACT", "ERR", "DN"))
+
+_PINS: Final = {
+    0x80F0: _TIMER,
+    0x81F0: _TIMER,
+    0xBEF0: _TIMER,
+    0x40F0: Pins(("CK", "CLR"), ("CUP",)),  # field: two lines, the second clears, the output CUP
+    0x00F0: Pins(("CK", "U/D", "CLR"), ("CUP",)),  # manual
+    0xACF0: Pins(("EN",), ()),  # print: MOV; a coil behind it hangs on the same line
+    0xADF0: Pins(("EN",), ()),
+    0x96F0: Pins(("EN",), ("CY",)),  # manual
+    0x1AF0: _LINK,  # print: HSPSO
+    0xD0F0: Pins(("EN",), ("ERR",)),  # print: MPARA
+    0x1CF0: _LINK,  # manual, chapter 13: CLINK
+}
+
+
+def pins_of(form: Form) -> Pins | None:
+    """A function's inputs and outputs; None where they are not known."""
+    return _PINS.get(form.fixed[0]) if form.fixed else None
