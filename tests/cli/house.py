@@ -16,7 +16,8 @@ from fatektool.cli import run
 from fatektool.program.archive import save_backup
 from fatektool.program.image import Program
 from fatektool.simulator.build import Simulation, build_simulation
-from fatektool.simulator.servers import Server, running
+from fatektool.simulator.servers import Server
+from tests.hurry import hurried
 from tests.program.samples import backup, program
 
 if TYPE_CHECKING:
@@ -102,7 +103,7 @@ class Press:
 
 
 class Door(NamedTuple):
-    """A PLC that is served over TCP by a thread of this process."""
+    """A PLC that is served over TCP by a thread of this process; a client in it waits for no real time."""
 
     target: str
     simulation: Simulation
@@ -117,7 +118,7 @@ def served(image: Program = OLD, **options: Any) -> Iterator[Door]:
     simulation = build_simulation(ladder_words=image.ladder_words, program=image.pages, **options)
     server = Server(simulation)
     door = server.open_tcp()
-    with running(server):
+    with hurried(server):
         yield Door(door.address, simulation)
 
 

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from fatektool.simulator.replay import Recorded, Replay
-from fatektool.simulator.servers import Server, running
+from fatektool.simulator.servers import Server
 from fatektool.transport.trace_reader import read_trace
+from tests.hurry import hurried
 
 from .house import Cli, one_line, served
 from .test_simulate import listening, simulator
@@ -33,7 +34,7 @@ def replayed(trace: Path, **options: Any) -> Iterator[tuple[str, Replay]]:
     replay = Replay(records, **options)
     server = Server(replay)
     door = server.open_tcp()
-    with running(server):
+    with hurried(server):
         yield door.address, replay
 
 

@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from fatektool.simulator.build import Simulation, build_simulation
-from fatektool.simulator.servers import Server, running
+from fatektool.simulator.servers import Server
 from tests.cli.house import Cli, check, process, served, started
 from tests.cli.terminal import Terminal
+from tests.hurry import hurried
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -28,7 +29,7 @@ def port(link: Path, **options: Any) -> Iterator[Simulation]:
     simulation = build_simulation(**options)
     server = Server(simulation)
     server.open_pty(link)
-    with running(server):
+    with hurried(server):
         yield simulation
 
 
@@ -125,7 +126,7 @@ def test_a_line_that_is_cut_in_the_middle_gives_the_figures_so_far() -> None:
     door = server.open_tcp()
     words = ["loopback", "-p", door.address, "--duration", 3600, "--json"]
     with Path("out").open("wb") as out, Terminal(*words, stdout=out.fileno()) as terminal:
-        with running(server):
+        with hurried(server):
             terminal.read_until(" ok, 0 errors")
         server.close()
         assert terminal.end() == 1
@@ -143,7 +144,7 @@ def test_a_port_that_is_pulled_out_gives_the_figures_so_far(place: Path) -> None
     with Path("out").open("wb") as out, Terminal(
         "loopback", "-p", place / "plc", "--baud", 115200, "--duration", 3600, stdout=out.fileno()
     ) as terminal:  # fmt: skip
-        with running(server):
+        with hurried(server):
             terminal.read_until(" ok, 0 errors")
         server.close()
         assert terminal.end() == 1
@@ -177,7 +178,7 @@ def test_a_plc_at_another_speed_is_found(place: Path, cli: Cli) -> None:
     simulation = build_simulation(stations=[1, 3], baud=38400)
     server = Server(simulation)
     server.open_pty(place / "plc", 38400)
-    with running(server):
+    with hurried(server):
         words = ["-p", place / "plc", "--timeout", "1", "--json"]
         done = cli("scan", *words, "--stations", "1-3", "--bauds", "9600,38400")
         assert done.code == 0

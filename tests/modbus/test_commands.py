@@ -9,8 +9,9 @@ import pytest
 
 from fatektool.program.archive import save_backup
 from fatektool.simulator.build import build_simulation
-from fatektool.simulator.servers import Server, running
+from fatektool.simulator.servers import Server
 from tests.cli.house import NEW, one_line
+from tests.hurry import hurried
 from tests.program.samples import backup
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ def line(request: pytest.FixtureRequest, place: Path, cli: Cli) -> Iterator[Line
     simulation = build_simulation([1, 247], protocol=protocol, faults=["drop=0.05", "noise=0.05"], seed=4)
     server = Server(simulation)
     door = server.open_tcp() if medium == "tcp" else server.open_pty(str(place / "plc"))
-    with running(server):
+    with hurried(server):
         yield Line(door.address, protocol, simulation, cli)
 
 

@@ -15,11 +15,12 @@ from fatektool.connection import connect
 from fatektool.errors import PortBusy
 from fatektool.program.archive import load_backup
 from fatektool.simulator.build import Simulation, build_simulation
-from fatektool.simulator.servers import Server, running
+from fatektool.simulator.servers import Server
 from fatektool.transport.base import LineSettings
 from fatektool.transport.serial_port import open_serial
 from tests.cli.house import OLD, check, one_line, process, started
 from tests.guard import GUARD_S
+from tests.hurry import hurried
 
 from .scripted import SILENCE, ScriptedModem
 
@@ -39,7 +40,7 @@ def plugged_in(place: Path, modem: ScriptedModem) -> Iterator[str]:
     """The modem on a pty; gives a target that calls through it."""
     server = Server(modem)
     server.open_pty(place / "ttyUSB0")
-    with running(server):
+    with hurried(server):
         yield f"modem:{place / 'ttyUSB0'}?number=0228082192{QUICK}"
 
 
@@ -177,7 +178,7 @@ def test_a_port_that_is_pulled_out_during_a_call(place: Path, cli: Cli) -> None:
 
     server.append(Server(ScriptedModem(plc=Pulled())))
     server[0].open_pty(place / "ttyUSB0")
-    with running(server[0]):
+    with hurried(server[0]):
         done = cli("status", "-p", f"modem:{place / 'ttyUSB0'}?number=1{QUICK}")
     assert done.code == 3
     assert "the port is gone" in one_line(done.err)
@@ -222,7 +223,7 @@ def test_the_lock_is_that_of_the_port(place: Path) -> None:
 def test_a_pty_has_no_dtr_and_other_ports_have(place: Path) -> None:
     server = Server(a_plc())
     server.open_pty(place / "tty")
-    with running(server), open_serial(str(place / "tty"), LineSettings()) as port:
+    with hurried(server), open_serial(str(place / "tty"), LineSettings()) as port:
         assert port.set_dtr(on=False) is False
     with open_serial("loop://", LineSettings()) as loop:
         assert loop.set_dtr(on=False) is True

@@ -12,8 +12,9 @@ from fatektool.connection import CODECS
 from fatektool.program.archive import save_backup
 from fatektool.protocol.explainers import EXPLAINERS
 from fatektool.simulator.build import build_simulation
-from fatektool.simulator.servers import Server, running
+from fatektool.simulator.servers import Server
 from tests.cli.house import NEW, one_line
+from tests.hurry import hurried
 from tests.program.samples import backup
 
 if TYPE_CHECKING:
@@ -41,7 +42,7 @@ def line(request: pytest.FixtureRequest, place: Path, cli: Cli) -> Iterator[Line
     simulation = build_simulation(protocol="mseries", ladder_words=400)
     server = Server(simulation)
     door = server.open_tcp() if request.param == "tcp" else server.open_pty(str(place / "plc"))
-    with running(server):
+    with hurried(server):
         yield Line(door.address, simulation, cli)
 
 

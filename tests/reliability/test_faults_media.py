@@ -12,7 +12,8 @@ import pytest
 from fatektool.program.archive import load_backup, save_backup
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.faults import BIT_ERRORS, FAULT_KINDS, POWER_CUT
-from fatektool.simulator.servers import Server, running
+from fatektool.simulator.servers import Server
+from tests.hurry import hurried
 from tests.program.samples import backup, program
 from tests.registers.plant import snapshot_of
 
@@ -163,7 +164,7 @@ def test_a_command_over_a_bad_line(turn: Turn, place: Path, cli: Cli) -> None:
     device.write_words("R", 0, KEPT)
     server = Server(simulation)
     target = open_door(server, medium, place)
-    with running(server):
+    with hurried(server):
         done = cli(*job.words.split(), "-p", target, "--protocol", protocol, "--json", *LINE)
     if done.code in job.results:
         job.look(done, device, place)
