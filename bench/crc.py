@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 from fatektool.protocol.commands import Loopback, ReadBriefStatus, ReadRegisters, Request, WriteRegisters
 from fatektool.protocol.elements import Element
-from fatektool.protocol.mseries import MSERIES
-from fatektool.protocol.mseries_crc import crc16
+from fatektool.protocol.fatek.mseries.codec import MSERIES
+from fatektool.protocol.fatek.mseries.crc import crc16
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -34,12 +34,12 @@ from typing import TYPE_CHECKING
 
 from common import pinned
 
+from fatektool.files.atomic import sync_folder, write_synced
 from fatektool.history.checking import check
 from fatektool.history.history import History
 from fatektool.program.archive import Backup, Source
-from fatektool.program.files import sync_folder, write_synced
 from fatektool.program.image import Program
-from fatektool.simulator.program_image import demonstration_program
+from fatektool.simulator.program.facon_program import demonstration_program
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

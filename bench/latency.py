@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from common import simulator
 
 import fatektool
-from fatektool.jobs.registers import read_elements
+from fatektool.jobs.elements.reads import read_elements
 from fatektool.protocol.elements import Element
 
 if TYPE_CHECKING:

@@ -24,9 +24,9 @@ sys.path.insert(0, str(Path(__file__).parent.parent))
 
 from fatektool.planner import plan_reads, plan_writes, turnaround_bytes
 from fatektool.protocol.elements import Element
-from fatektool.protocol.facon import FACON
-from fatektool.protocol.modbus import ASCII, RTU, TCP
-from fatektool.protocol.mseries import MSERIES
+from fatektool.protocol.fatek.facon.codec import FACON
+from fatektool.protocol.fatek.mseries.codec import MSERIES
+from fatektool.protocol.modbus.codec import ASCII, RTU, TCP
 from tests.planner.exhaustive import READ_CAPS, WRITE_CAPS, Caps, least_read, least_write, wire_bytes
 from tests.planner.one_kind import least_of_registers
 from tests.planner.plain import merged, one_each

@@ -31,11 +31,11 @@ sys.path.insert(0, str(Path(__file__).parent.parent))
 from common import pinned, simulator
 
 from fatektool import connect
-from fatektool.batch import ask_all
+from fatektool.exchange.batch import ask_all
 from fatektool.protocol.commands import ReadPage, ReadRegisters
 from fatektool.protocol.elements import Element
-from fatektool.protocol.facon import FACON
-from fatektool.protocol.mseries import MSERIES
+from fatektool.protocol.fatek.facon.codec import FACON
+from fatektool.protocol.fatek.mseries.codec import MSERIES
 
 if TYPE_CHECKING:
     from collections.abc import Callable

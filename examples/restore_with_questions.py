@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 
 import fatektool
 from fatektool.errors import RestoreIncomplete
-from fatektool.jobs.restore import RestoreOptions
+from fatektool.jobs.programs.restore import RestoreOptions
 
 if TYPE_CHECKING:
-    from fatektool.jobs.restore import RestorePlan
+    from fatektool.jobs.programs.restore import RestorePlan
 
 
 def agree(plan: RestorePlan, old_program: Path | None) -> bool:

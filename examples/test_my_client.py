@@ -8,7 +8,7 @@ from __future__ import annotations
 import socket
 
 from fatektool.simulator.build import build_simulation
-from fatektool.simulator.servers import Server, running
+from fatektool.simulator.listen.servers import Server, running
 
 
 def read_r0(address: tuple[str, int]) -> int | None:

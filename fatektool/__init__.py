@@ -30,11 +30,11 @@ if TYPE_CHECKING:
     from fatektool.client import Plc
     from fatektool.connection import connect
     from fatektool.errors import FatektoolError
-    from fatektool.jobs.backup import backup
     from fatektool.jobs.command_words import parse_command
-    from fatektool.jobs.restore import restore
+    from fatektool.jobs.programs.backup import backup
+    from fatektool.jobs.programs.restore import restore
+    from fatektool.jobs.programs.verify import verify
     from fatektool.jobs.status import read_status
-    from fatektool.jobs.verify import verify
     from fatektool.program.archive import Backup, load_backup, save_backup
     from fatektool.program.compare import compare
     from fatektool.program.headers.header import Header
@@ -51,7 +51,7 @@ _HOMES = {
     "Plc": "fatektool.client",
     "Program": "fatektool.program.image",
     "ProgramFile": "fatektool.project.program_file",
-    "backup": "fatektool.jobs.backup",
+    "backup": "fatektool.jobs.programs.backup",
     "checksum": "fatektool.protocol.frames",
     "compare": "fatektool.program.compare",
     "connect": "fatektool.connection",
@@ -61,9 +61,9 @@ _HOMES = {
     "load_program": "fatektool.project.program_file",
     "parse_command": "fatektool.jobs.command_words",
     "read_status": "fatektool.jobs.status",
-    "restore": "fatektool.jobs.restore",
+    "restore": "fatektool.jobs.programs.restore",
     "save_backup": "fatektool.program.archive",
-    "verify": "fatektool.jobs.verify",
+    "verify": "fatektool.jobs.programs.verify",
 }
 
 __all__ = [

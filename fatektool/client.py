@@ -8,8 +8,8 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
-from fatektool.batch import ask_all, ask_until_refused, tell_all
 from fatektool.errors import DataError, LineError, PlcBusy, PlcError, PlcRefused
+from fatektool.exchange.batch import ask_all, ask_until_refused, tell_all
 from fatektool.protocol.commands import (
     DETAILED_BYTES,
     Control,
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from types import TracebackType
     from typing import Self
 
-    from fatektool.link import Link
+    from fatektool.exchange.link import Link
     from fatektool.protocol.commands import Request
     from fatektool.protocol.elements import Element
     from fatektool.protocol.status import BriefStatus, DetailedStatus

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Final, Literal
 
 from fatektool.client import Plc
 from fatektool.errors import UsageError
-from fatektool.link import Link
+from fatektool.exchange.link import Link
 from fatektool.protocol.codec import require_commands, require_station
-from fatektool.protocol.codecs import Codecs
+from fatektool.protocol.registry import Codecs
 from fatektool.transport.base import LineSettings, no_note
 from fatektool.transport.patience import Patience, PatientTransport
 from fatektool.transport.target import Target, TargetKind
@@ -27,12 +27,12 @@ if TYPE_CHECKING:
 
     from fatektool.protocol.codec import Codec
     from fatektool.protocol.commands import Command
-    from fatektool.protocol.modbus_map import ModbusMap
-    from fatektool.shared_line import SharedLine
+    from fatektool.protocol.modbus.map import ModbusMap
     from fatektool.transport.base import Transport
     from fatektool.transport.lent import LentTransport
     from fatektool.transport.limit import Limit
     from fatektool.transport.lock import PortLock
+    from fatektool.transport.shared_line import SharedLine
 
 CODECS: Mapping[str, Codec] = Codecs()
 _LAST_STATION: Final = 254
@@ -171,13 +171,13 @@ def connect(
 
 
 def _mapped(codec: Codec, modbus_map: ModbusMap | None) -> Codec:
-    from fatektool.plc_map import mapped
+    from fatektool.exchange.plc_map import mapped
 
     return mapped(codec, modbus_map)
 
 
 def _use_own_map(link: Link) -> None:
-    from fatektool.plc_map import map_in_plc
+    from fatektool.exchange.plc_map import map_in_plc
 
     link.codec = _mapped(link.codec, map_in_plc(link))
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fatektool.protocol.facon import FACON
+from fatektool.protocol.fatek.facon.codec import FACON
 from fuzz.frames import look_at
 from tests.protocol.decoding import framed
 

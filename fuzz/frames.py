@@ -39,8 +39,8 @@ if TYPE_CHECKING:
 
     from fatektool.protocol.codec import Frame
     from fatektool.protocol.commands import Request
-    from fatektool.protocol.facon import FaconCodec
-    from fatektool.protocol.mseries import MseriesCodec
+    from fatektool.protocol.fatek.facon.codec import FaconCodec
+    from fatektool.protocol.fatek.mseries.codec import MseriesCodec
 
 LAST_STATION = 254
 X0, R0, DR0 = Element("X", 0), Element("R", 0), Element("DR", 0)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from fatektool.errors import DataError
-from fatektool.jobs.link_toml import load_table
-from fatektool.jobs.link_toml_text import dump_table
+from fatektool.jobs.plcports.toml import load_table
+from fatektool.jobs.plcports.toml_text import dump_table
 from fuzz.words import require_plain
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fatektool.protocol.mseries import MSERIES
+from fatektool.protocol.fatek.mseries.codec import MSERIES
 from fuzz.frames import look_at
 from tests.protocol.decoding import sealed
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from fatektool.errors import DataError
-from fatektool.jobs.snapshot import parse_snapshot, raw_of
+from fatektool.jobs.snapshots.snapshot import parse_snapshot, raw_of
 from fuzz.documents import json_of
 from fuzz.words import require_plain
-from tests.registers.plant import snapshot_of
+from tests.plant import snapshot_of
 
 GOOD = snapshot_of("R0-R1", "DR4:f32", "X3", "M0:16", "D7:i16").document()
 

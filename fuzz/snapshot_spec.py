@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fatektool.errors import DataError
-from fatektool.jobs.snapshot_spec import MAX_ITEMS, parse_spec
+from fatektool.jobs.snapshots.spec import MAX_ITEMS, parse_spec
 from fuzz.words import require_plain
 
 

@@ -20,17 +20,18 @@ from unittest.mock import patch
 
 from fatektool import connection
 from fatektool.errors import TransportTimeout
-from fatektool.simulator.pty_door import PtyDoor
-from fatektool.simulator.servers import running
-from fatektool.transport import serial_port, tcp, udp
+from fatektool.simulator.listen.pty import PtyDoor
+from fatektool.simulator.listen.servers import running
+from fatektool.transport import tcp, udp
 from fatektool.transport.base import Transport
+from fatektool.transport.serial_line import port as serial_port
 
 if TYPE_CHECKING:
     import selectors
     from collections.abc import Callable, Iterator
 
-    from fatektool.simulator.doors import Line
-    from fatektool.simulator.servers import Server
+    from fatektool.simulator.listen.listeners import Line
+    from fatektool.simulator.listen.servers import Server
     from fatektool.transport.base import LineSettings
 
 _LOOK_S = 0.005

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from fatektool.client import Plc
 from fatektool.connection import CODECS
-from fatektool.link import Link
+from fatektool.exchange.link import Link
 from fatektool.simulator.build import build_simulation
 from fatektool.transport.base import LineSettings
 from fatektool.transport.memory import MemoryTransport

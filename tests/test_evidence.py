@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parent.parent
+from tests.root import ROOT
+
 TABLE = (ROOT / "docs" / "evidence.md").read_text(encoding="utf-8")
 MARK = re.compile(r"\[E:([\w-]*)\]")
 GRADES = set(re.findall(r"^\| (paper|[a-z ]+) \| [^|]+ \|$", TABLE.split("## ")[0], re.MULTILINE)) - {"grade"}

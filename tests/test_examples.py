@@ -13,9 +13,8 @@ import pytest
 from fatektool.connection import connect
 from fatektool.protocol.elements import Element
 from fatektool.simulator.build import build_simulation
-from fatektool.simulator.servers import Server, running
-
-EXAMPLES = Path(__file__).parent.parent / "examples"
+from fatektool.simulator.listen.servers import Server, running
+from tests.root import EXAMPLES
 
 
 def run(folder: Path, *command: str) -> subprocess.CompletedProcess[str]:
@@ -27,7 +26,7 @@ def run(folder: Path, *command: str) -> subprocess.CompletedProcess[str]:
 
 def backup_of_seed(folder: Path, seed: int) -> Path:
     """A backup of another demonstration program."""
-    from fatektool.jobs.backup import backup
+    from fatektool.jobs.programs.backup import backup
     from fatektool.program.archive import save_backup
     from tests.plcs import simulated
 

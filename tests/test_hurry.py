@@ -10,7 +10,7 @@ import pytest
 from fatektool.connection import connect
 from fatektool.errors import NoAnswer
 from fatektool.simulator.build import build_simulation
-from fatektool.simulator.servers import Server
+from fatektool.simulator.listen.servers import Server
 from tests.hurry import hurried
 
 if TYPE_CHECKING:

@@ -16,8 +16,8 @@ import pytest
 
 from fatektool.program.archive import load_backup
 from fatektool.simulator.build import build_simulation
-from fatektool.simulator.pty_door import PTY_SUPPORTED
-from fatektool.simulator.servers import Server, running
+from fatektool.simulator.listen.pty import PTY_SUPPORTED
+from fatektool.simulator.listen.servers import Server, running
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 from fatektool.cli.app import ENTRIES
+from tests.root import ROOT
 
-ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 _TIME = re.compile(

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, NoReturn, TextIO
 
 import click
 
-from fatektool.cli.output import print_json, tell
-from fatektool.cli.streams import mend_streams, reader_is_gone
+from fatektool.cli.shared.output import print_json, tell
+from fatektool.cli.shared.streams import mend_streams, reader_is_gone
 from fatektool.errors import DataError, FatektoolError, FileWarning, UsageError
 
 if TYPE_CHECKING:
@@ -116,7 +116,7 @@ class Interrupted(FatektoolError):
 def failed(error: FatektoolError, *, as_json: bool) -> int:
     """Say what went wrong on stderr, on one line but for ``lines``; with ``--json`` in a document too."""
     if as_json:
-        from fatektool.cli.documents import error_document
+        from fatektool.cli.shared.documents import error_document
 
         with contextlib.suppress(OSError):
             print_json(error_document(error))

@@ -10,6 +10,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import DataError, FatektoolError, UsageError
+from fatektool.files.atomic import write_whole
 from fatektool.history.names import require_name
 from fatektool.history.packing import is_due, pack_loose
 from fatektool.history.recording import Recorded, look, unchanged, write
@@ -19,7 +20,6 @@ from fatektool.history.trees import file_in, files
 from fatektool.history.writing import writing
 from fatektool.program.archive import Backup
 from fatektool.program.compare import Comparison, compare
-from fatektool.program.files import write_whole
 from fatektool.transport.base import no_note
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ import secrets
 import zlib
 from typing import TYPE_CHECKING, Final
 
-from fatektool.program.files import sync_folder, write_synced
+from fatektool.files.atomic import sync_folder, write_synced
 
 if TYPE_CHECKING:
     from pathlib import Path

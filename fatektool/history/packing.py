@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Final
 
 from dulwich.pack import UnpackedObject
 
+from fatektool.files.atomic import sync_folder
 from fatektool.history.loose import TEMPORARY, read_loose
-from fatektool.program.files import sync_folder
 
 if TYPE_CHECKING:
     from pathlib import Path

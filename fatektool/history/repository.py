@@ -23,11 +23,11 @@ from dulwich.refs import Ref
 from dulwich.repo import Repo
 
 from fatektool.errors import DataError, FatektoolError, UsageError
+from fatektool.files.atomic import file_error
 from fatektool.history.commits import Commit, parse_commit
 from fatektool.history.loose import hash_of, read_loose
 from fatektool.history.sharing import Rights, rights_of
 from fatektool.history.trees import entries, files
-from fatektool.program.files import file_error
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -26,9 +26,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import PortBusy, UsageError
+from fatektool.files.atomic import file_error, sync_folder, write_synced
 from fatektool.history.repository import is_repository
 from fatektool.history.sharing import FILE_MODE, FOLDER_MODE, Rights, rights_of
-from fatektool.program.files import file_error, sync_folder, write_synced
 from fatektool.transport.base import no_note
 from fatektool.transport.lock import PortLock
 

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.connection import CODECS, usual_format
 from fatektool.errors import DataError, UsageError
+from fatektool.files.plain_text import plain_text
+from fatektool.files.strict_toml import read_toml
 from fatektool.inventory.find import EXPECTATIONS
 from fatektool.inventory.lines import key_lines, line_of
-from fatektool.program.plain_text import plain_text
-from fatektool.program.strict_toml import read_toml
 from fatektool.protocol.codec import require_station
 from fatektool.transport.base import LineSettings
 from fatektool.transport.target import Target, TargetKind

@@ -43,8 +43,8 @@ def load_inventory(path: Path) -> Inventory:
         UsageError: there is no such file.
         DataError: it is far too large.
     """
+    from fatektool.files.atomic import read_bounded
     from fatektool.inventory.entries import parse_inventory
-    from fatektool.program.files import read_bounded
 
     return parse_inventory(read_bounded(path, _MAX_FILE), path)
 

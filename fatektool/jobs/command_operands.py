@@ -6,8 +6,8 @@ import re
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from fatektool.errors import UsageError
-from fatektool.jobs.assignment import parse_assignment
-from fatektool.jobs.selection import parse_item
+from fatektool.jobs.elements.assignment import parse_assignment
+from fatektool.jobs.elements.selection import parse_item
 from fatektool.protocol.commands import (
     Control,
     ControlDiscrete,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fatektool.jobs.times import utc
+from fatektool.files.times import utc
 from fatektool.protocol.commands import ReadDetailedStatus
 
 if TYPE_CHECKING:

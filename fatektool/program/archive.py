@@ -21,12 +21,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.errors import DataError
-from fatektool.program.files import read_bounded, write_whole
+from fatektool.files.atomic import read_bounded, write_whole
+from fatektool.files.strict_json import read_json
 from fatektool.program.headers.families import short_document
 from fatektool.program.headers.header import PAGE_BYTES
 from fatektool.program.image import Program, is_whole, page_count
 from fatektool.program.plc_record import fault_of
-from fatektool.program.strict_json import read_json
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -7,10 +7,10 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.errors import DataError
+from fatektool.files.atomic import read_bounded
 from fatektool.ladder.image import code_of, fbe_code
 from fatektool.program.archive import LARGEST_FILE as LARGEST_BACKUP
 from fatektool.program.archive import Backup
-from fatektool.program.files import read_bounded
 from fatektool.program.headers.header import PAGE_BYTES, PAGE_WORDS
 from fatektool.program.image import Program
 from fatektool.project.comments import Comments

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from fatektool.protocol.facon_explain import FaconExplainer
-from fatektool.protocol.modbus_explain import AsciiExplainer, RtuExplainer, TcpExplainer
-from fatektool.protocol.mseries_explain import MseriesExplainer
+from fatektool.protocol.fatek.facon.explain import FaconExplainer
+from fatektool.protocol.fatek.mseries.explain import MseriesExplainer
+from fatektool.protocol.modbus.explain import AsciiExplainer, RtuExplainer, TcpExplainer
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -15,12 +15,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 from fatektool.errors import UsageError
-from fatektool.protocol.codecs import Codecs
+from fatektool.protocol.registry import Codecs
 
 if TYPE_CHECKING:
     from fatektool.protocol.codec import Codec
     from fatektool.protocol.commands import Request
-    from fatektool.protocol.modbus import ModbusCodec
+    from fatektool.protocol.modbus.codec import ModbusCodec
 
 A = TypeVar("A")
 
@@ -68,10 +68,10 @@ def answer_frame(
     if protocol.startswith(_MODBUS):
         return _modbus(protocol).encode_answer(station, request, answer, number)
     if protocol == "mseries":
-        from fatektool.protocol.mseries import MSERIES
+        from fatektool.protocol.fatek.mseries.codec import MSERIES
 
         return MSERIES.encode_answer(station, request, answer)
-    from fatektool.protocol.facon import FACON
+    from fatektool.protocol.fatek.facon.codec import FACON
 
     return FACON.encode_answer(station, request, answer)
 
@@ -103,14 +103,14 @@ def raw_frame(
         raise UsageError(f"command: expected 00 to FF, got {command:X}")
     if not protocol.startswith(_MODBUS):
         if protocol == "facon":
-            from fatektool.protocol.facon import frame_bytes
+            from fatektool.protocol.fatek.facon.codec import frame_bytes
 
             return frame_bytes(station, command, data)
-        from fatektool.protocol import mseries
+        from fatektool.protocol.fatek.mseries import codec as mseries
 
         header = mseries.RESPONSE if answer else mseries.QUERY
         return mseries.frame_bytes(header, station, command, data)
-    from fatektool.protocol.modbus_frame import MAX_PDU
+    from fatektool.protocol.modbus.frame import MAX_PDU
 
     if station and station not in codec.stations:
         raise UsageError(f"station: expected 0 to {codec.stations[-1]}, got {station}")
@@ -158,11 +158,11 @@ def checksum(data: bytes, protocol: str = "facon") -> bytes:
         case "facon":
             return b"%02X" % (sum(data) & 0xFF)
         case "mseries" | "modbus-rtu":
-            from fatektool.protocol.mseries_crc import crc_bytes
+            from fatektool.protocol.fatek.mseries.crc import crc_bytes
 
             return crc_bytes(data)
         case "modbus-ascii":
-            from fatektool.protocol.modbus_pdu import lrc_byte
+            from fatektool.protocol.modbus.pdu import lrc_byte
 
             return b"%02X" % lrc_byte(data)
     raise UsageError(f"{protocol} frames have no checksum: the network has its own")
@@ -182,17 +182,17 @@ def error_text(code: int, protocol: str = "facon") -> str:
     if code == 0:
         return "no error"
     if protocol.startswith(_MODBUS):
-        from fatektool.protocol import modbus_data
+        from fatektool.protocol.modbus import data as modbus_data
 
         if code in modbus_data.GATEWAY:
             return f"the gateway says: {modbus_data.GATEWAY[code]}"
         return modbus_data.MEANINGS.get(code, "a code that Modbus does not list")
     if protocol == "mseries":
-        from fatektool.protocol import mseries_errors
+        from fatektool.protocol.fatek.mseries import errors as mseries_errors
 
         return mseries_errors.MEANINGS.get(code, mseries_errors.UNKNOWN)
     if protocol == "mseries":
-        from fatektool.protocol import mseries_errors
+        from fatektool.protocol.fatek.mseries import errors as mseries_errors
 
         return mseries_errors.MEANINGS.get(code, mseries_errors.UNKNOWN)
     from fatektool.protocol.plc_errors import MEANINGS
@@ -201,6 +201,6 @@ def error_text(code: int, protocol: str = "facon") -> str:
 
 
 def _modbus(protocol: str) -> ModbusCodec:
-    from fatektool.protocol.modbus import ASCII, RTU, TCP
+    from fatektool.protocol.modbus.codec import ASCII, RTU, TCP
 
     return {codec.name: codec for codec in (RTU, ASCII, TCP)}[protocol]

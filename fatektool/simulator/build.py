@@ -23,8 +23,8 @@ from fatektool.simulator.faults import DEFAULT_SLOW_S, Faults, parse_faults
 from fatektool.simulator.line import BITS_PER_CHAR, PIECE_S, WHOLE_ANSWERS, SimulatedLine
 from fatektool.simulator.models import DEFAULT_MODEL, MAX_LADDER_WORDS, MODELS, PAGE_BYTES, WORDS_PER_PAGE
 from fatektool.simulator.plc import MAX_STATION, SimulatedPlc
-from fatektool.simulator.programs import program_of
-from fatektool.simulator.slaves import DEFAULT_PROTOCOL, SLAVES
+from fatektool.simulator.program.demonstration import program_of
+from fatektool.simulator.slaves.registry import DEFAULT_PROTOCOL, SLAVES
 from fatektool.simulator.state import StateFile
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from fatektool.simulator.models import Model
-    from fatektool.simulator.slave import Slave
+    from fatektool.simulator.slaves.base import Slave
 
 
 @dataclass(slots=True)

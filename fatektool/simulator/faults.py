@@ -34,7 +34,7 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from fatektool.errors import UsageError
-from fatektool.simulator.slave import BROADCAST, Request, RequestKind, Slave, addressed
+from fatektool.simulator.slaves.base import BROADCAST, Request, RequestKind, Slave, addressed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fatektool.simulator.faults import Faults
-    from fatektool.simulator.slave import Request, Slave
+    from fatektool.simulator.slaves.base import Request, Slave
 
 BITS_PER_CHAR = 10
 """7E1 and 8N1: start, seven or eight bits, parity or none, stop."""

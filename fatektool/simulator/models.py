@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from fatektool.simulator.fbs_program import CODE, FbsImage
+from fatektool.simulator.program.fbs_program import CODE, FbsImage
 
 MAX_LADDER_WORDS = 0xFFFF
 WORDS_PER_PAGE = 64

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 from fatektool.simulator.memory import DiscreteAction, Memory
 from fatektool.simulator.models import DEFAULT_MODEL, MODELS, PAGE_BYTES, Model
-from fatektool.simulator.programs import program_of
+from fatektool.simulator.program.demonstration import program_of
 from fatektool.simulator.refusal import Refusal, RefusalCode
 
 if TYPE_CHECKING:

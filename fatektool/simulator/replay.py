@@ -23,14 +23,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from fatektool.errors import DataError, UsageError
 from fatektool.simulator.build import build_plcs
-from fatektool.simulator.slave import BROADCAST, Request, RequestKind
-from fatektool.simulator.slaves import DEFAULT_PROTOCOL, SLAVES
+from fatektool.simulator.slaves.base import BROADCAST, Request, RequestKind
+from fatektool.simulator.slaves.registry import DEFAULT_PROTOCOL, SLAVES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from fatektool.simulator.slave import Slave
-    from fatektool.simulator.slaves import MakeSlave
+    from fatektool.simulator.slaves.base import Slave
+    from fatektool.simulator.slaves.registry import MakeSlave
 
 _MOST_NAMES = 1000
 """How many different unknown requests are remembered; all are counted."""

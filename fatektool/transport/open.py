@@ -52,7 +52,7 @@ def open_transport(
         UsageError: a target that is no medium.
     """
     if target.on_serial_port:
-        from fatektool.transport.serial_port import open_serial
+        from fatektool.transport.serial_line.port import open_serial
 
         on_lock(_lock(_serial_line(target.path), lock_wait_s, stack, waiting))
         port = stack.enter_context(
@@ -60,7 +60,7 @@ def open_transport(
         )
         if target.call is None:
             return port
-        from fatektool.transport.modem import ModemTransport
+        from fatektool.transport.modem.device import ModemTransport
 
         modem = stack.enter_context(ModemTransport(port, target.call, note))
         modem.connect()
@@ -82,7 +82,7 @@ def open_transport(
 
 def _serial_line(path: str) -> str:
     """The line of a serial target: a gateway's address where a URL leads to one, else its device or URL."""
-    from fatektool.transport.serial_url import host_of, line_of
+    from fatektool.transport.serial_line.url import host_of, line_of
 
     gateway = host_of(path)
     if gateway is None:

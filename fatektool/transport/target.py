@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Final
 from fatektool.errors import UsageError
 
 if TYPE_CHECKING:
-    from fatektool.transport.dial import Call
+    from fatektool.transport.modem.dial import Call
 
 _NET: Final = re.compile(
     r"(tcp|udp)://(?:\[([0-9A-Fa-f:.%\w]+)\]|([^/:\[\]@?#\s]+))(?::([0-9]{1,9}))?/?", re.ASCII
@@ -83,7 +83,7 @@ class Target:
 
     @classmethod
     def _modem(cls, text: str) -> Target:
-        from fatektool.transport.dial import Call
+        from fatektool.transport.modem.dial import Call
 
         path, _, query = text.removeprefix("modem:").rpartition("?")  # a URL may have one of its own
         if not path:

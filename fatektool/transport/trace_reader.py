@@ -10,7 +10,7 @@ from datetime import datetime
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import DataError
-from fatektool.program.plain_text import EncodingError, plain_text
+from fatektool.files.plain_text import EncodingError, plain_text
 from fatektool.transport.trace import LINK_TYPE, PCAP_MAGIC, PROTOCOL_CODES, RECEIVED, SENT, time_text
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from .house import Cli, Press
+from tests.cli.running import Cli, Press
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """A folder of its own to work in, with locks of its own."""
     locks, work = tmp_path / "locks", tmp_path / "work"
-    locks.mkdir()
+    locks.mkdir(exist_ok=True)
     work.mkdir()
     monkeypatch.setenv("FATEKTOOL_LOCK_DIR", str(locks))
     monkeypatch.setenv("TERM", "xterm")

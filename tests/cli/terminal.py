@@ -12,7 +12,7 @@ import sys
 import termios
 from typing import TYPE_CHECKING
 
-from .house import COMMAND, environment
+from tests.cli.running import COMMAND, environment
 
 if TYPE_CHECKING:
     from types import TracebackType

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import pytest
 
 from fatektool.simulator.build import build_simulation
-from fatektool.simulator.servers import Server, running
+from fatektool.simulator.listen.servers import Server, running
+from tests.examples.container import Ended, run_in_container, why_no_container
 from tests.program.samples import program
-
-from .container import ROOT, Ended, run_in_container, why_no_container
+from tests.root import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

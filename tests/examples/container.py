@@ -29,10 +29,11 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
 
+from tests.root import ROOT
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-ROOT: Final = Path(__file__).parent.parent.parent
 LINKS: Final = ("bin", "sbin", "lib", "lib32", "lib64", "libx32")
 COPIED: Final = (
     *("passwd", "group", "shadow", "gshadow", "login.defs", "nsswitch.conf"),

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 if TYPE_CHECKING:
-    from .conftest import Gateway
+    from tests.examples.conftest import Gateway
 
 pytestmark = [
     pytest.mark.slow,

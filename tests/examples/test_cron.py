@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from .conftest import NODE_EXPORTER
+from tests.examples.conftest import NODE_EXPORTER
 
 if TYPE_CHECKING:
-    from .conftest import Blocks, Gateway
+    from tests.examples.conftest import Blocks, Gateway
 
 
 # Each job at cron's start, and its exit code to 'ended': all else is left to cron.

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import pytest
 
-from .container import ROOT
+from tests.root import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

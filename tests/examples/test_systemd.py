@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from .conftest import EXAMPLES, NODE_EXPORTER
+from tests.examples.conftest import EXAMPLES, NODE_EXPORTER
 
 if TYPE_CHECKING:
-    from .conftest import Blocks, Gateway
+    from tests.examples.conftest import Blocks, Gateway
 
 
 AGAIN = """

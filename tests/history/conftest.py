@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from .books import Book
+from tests.history.books import Book
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -14,8 +14,7 @@ from fatektool.history.packing import pack_loose
 from fatektool.history.repository import Repository
 from fatektool.history.writing import writing
 from fatektool.program.image import Program
-
-from .books import ONE, THREE, TWO, Book
+from tests.history.books import ONE, THREE, TWO, Book
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -13,9 +13,8 @@ from fatektool.history.history import History
 from fatektool.history.packing import pack_loose
 from fatektool.history.repository import Repository
 from fatektool.history.writing import writing
-
-from .books import Book, git
-from .crash import ONE, TWO
+from tests.history.books import Book, git
+from tests.history.crash import ONE, TWO
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="ends processes by fork and signal")
 

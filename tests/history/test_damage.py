@@ -9,8 +9,7 @@ import pytest
 
 from fatektool.errors import DataError, FatektoolError
 from fatektool.history.checking import check
-
-from .books import ONE, THREE, TWO, Book, git
+from tests.history.books import ONE, THREE, TWO, Book, git
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -22,8 +22,7 @@ from dulwich.web import make_wsgi_chain
 from fatektool.errors import PushFailed
 from fatektool.history.push import push
 from fatektool.history.push.outcome import failed, without_secrets
-
-from .books import GIT, ONE, THREE, TWO, Book, git
+from tests.history.books import GIT, ONE, THREE, TWO, Book, git
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

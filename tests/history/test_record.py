@@ -19,9 +19,8 @@ from fatektool.history.packing import MANY, is_due, pack_loose
 from fatektool.history.repository import Repository
 from fatektool.history.writing import Branch, move_branch, writing
 from fatektool.program.archive import Backup, Source, load_backup
+from tests.history.books import DAY, NOON, ONE, THREE, TWO, Book, git
 from tests.program.samples import backup, changed, program
-
-from .books import DAY, NOON, ONE, THREE, TWO, Book, git
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -10,8 +10,7 @@ import pytest
 from fatektool.errors import DataError, UsageError
 from fatektool.history.history import History
 from fatektool.history.writing import writing
-
-from .books import ONE, THREE, TWO, Book
+from tests.history.books import ONE, THREE, TWO, Book
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -18,8 +18,8 @@ from fatektool.history.packing import pack_loose
 from fatektool.history.push import push
 from fatektool.history.repository import Repository
 from fatektool.history.writing import writing
-
-from .books import GIT, ONE, THREE, TWO, Book, git
+from tests.history.books import GIT, ONE, THREE, TWO, Book, git
+from tests.root import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -104,7 +104,7 @@ def shared() -> Iterator[Path]:
 
 
 def user(number: int, name: str, folder: Path, umask: str) -> subprocess.Popen[str]:
-    environment = os.environ | {"PYTHONPATH": str(Path(__file__).parent.parent.parent)}
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
     return subprocess.Popen(
         [sys.executable, "-c", USER, str(number), str(GROUP), name, str(folder), umask],
         stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment,
@@ -158,7 +158,7 @@ def test_another_user_where_nothing_is_shared(shared: Path) -> None:
         "    except FatektoolError as error: print(error, flush=True); continue\n    (done,)"
     )  # fmt: skip
     shared.chmod(0o750)
-    environment = os.environ | {"PYTHONPATH": str(Path(__file__).parent.parent.parent)}
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
     done = subprocess.run(
         [sys.executable, "-c", script, str(SECOND), str(GROUP), "oven", str(shared), "022"],
         input="\n", capture_output=True, text=True, check=False, env=environment,

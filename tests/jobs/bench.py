@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from fatektool.client import Plc
-from fatektool.link import Link
-from fatektool.protocol.facon import FACON
+from fatektool.exchange.link import Link
+from fatektool.protocol.fatek.facon.codec import FACON
 from fatektool.simulator.build import build_simulation
 from fatektool.transport.base import LineSettings
 from fatektool.transport.memory import MemoryTransport

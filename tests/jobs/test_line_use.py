@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING
 import pytest
 
 from fatektool.client import Plc
-from fatektool.jobs.backup import backup
-from fatektool.jobs.restore import RestoreOptions, carry_out, plan_restore
-from fatektool.jobs.snapshot import take_all
-from fatektool.jobs.verify import verify
-from fatektool.link import Link
+from fatektool.exchange.link import Link
+from fatektool.jobs.programs.backup import backup
+from fatektool.jobs.programs.restore import RestoreOptions, carry_out, plan_restore
+from fatektool.jobs.programs.verify import verify
+from fatektool.jobs.snapshots.snapshot import take_all
 from fatektool.program.image import Program
-from fatektool.protocol.facon import FACON
+from fatektool.protocol.fatek.facon.codec import FACON
 from fatektool.simulator.build import build_simulation
 from fatektool.transport.base import LineSettings
 from fatektool.transport.memory import MemoryTransport

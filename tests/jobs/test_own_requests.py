@@ -8,14 +8,14 @@ import pytest
 
 from fatektool.client import Plc
 from fatektool.errors import PlcError
-from fatektool.jobs.register_writes import write_elements
-from fatektool.jobs.registers import read_elements
-from fatektool.jobs.selection import parse_items
-from fatektool.jobs.snapshot import take_snapshot
-from fatektool.jobs.snapshot_spec import items_of
-from fatektool.link import Link
+from fatektool.exchange.link import Link
+from fatektool.jobs.elements.reads import read_elements
+from fatektool.jobs.elements.selection import parse_items
+from fatektool.jobs.elements.writes import write_elements
+from fatektool.jobs.snapshots.snapshot import take_snapshot
+from fatektool.jobs.snapshots.spec import items_of
 from fatektool.protocol.elements import Element
-from fatektool.protocol.facon import FACON
+from fatektool.protocol.fatek.facon.codec import FACON
 from fatektool.simulator.build import build_simulation
 from fatektool.transport.base import LineSettings
 from fatektool.transport.memory import MemoryTransport

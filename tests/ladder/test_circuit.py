@@ -14,7 +14,7 @@ from fatektool.ladder.circuit.reading import DEEPEST, NoCircuit, circuit_of
 from fatektool.ladder.circuit.roles import PLACES, Role, role_of
 from fatektool.ladder.circuit.writing import instructions_of
 from fatektool.ladder.networks import Code, Network
-from fatektool.simulator.fbs_code import random_code
+from fatektool.simulator.program.fbs_code import random_code
 from tests.ladder.circuits import WORDS, circuits, coded, network, one
 from tests.ladder.meaning import by_circuit, by_stack
 from tests.ladder.shapes import shape

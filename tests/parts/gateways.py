@@ -6,13 +6,13 @@ from contextlib import ExitStack
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Self
 
-from .programs import command, free_port, listening, running
+from tests.parts.programs import command, free_port, listening, running
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from .programs import Running
+    from tests.parts.programs import Running
 
 
 @dataclass

@@ -13,24 +13,23 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from fatektool.cli import fleet_jobs
+from fatektool.cli.many.fleet import jobs as fleet_jobs
 from fatektool.jobs.status import read_status
 from fatektool.simulator.build import build_simulation
-from fatektool.simulator.pty_door import PTY_SUPPORTED
-from fatektool.simulator.servers import Server, running
+from fatektool.simulator.listen.pty import PTY_SUPPORTED
+from fatektool.simulator.listen.servers import Server, running
 from fatektool.transport.lock import PortLock
-from tests.fleet.gateway import plcs_of
+from tests.cli.many.fleet.gateway import plcs_of
+from tests.parts.gateways import ser2net
+from tests.parts.programs import needs
 from tests.program.samples import program
-
-from .gateways import ser2net
-from .programs import needs
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fatektool.client import Plc
     from fatektool.jobs.status import StatusReport
-    from tests.cli.house import Cli
+    from tests.cli.running import Cli
 
 WORDS = 128
 STATIONS = (1, 2, 3)

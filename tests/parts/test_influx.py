@@ -10,17 +10,16 @@ import urllib.request
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from fatektool.jobs.snapshot_formats import as_influx
-from tests.cli.house import served
-from tests.registers.test_formats import NASTY, SECONDS, snapshot
-
-from .programs import PATIENCE_S, command, free_port, needs, running
+from fatektool.jobs.snapshots.formats import as_influx
+from tests.cli.running import served
+from tests.jobs.snapshots.test_formats import NASTY, SECONDS, snapshot
+from tests.parts.programs import PATIENCE_S, command, free_port, needs, running
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from tests.cli.house import Cli
+    from tests.cli.running import Cli
 
 CONFIG = """\
 reporting-enabled = false

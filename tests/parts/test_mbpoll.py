@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 from fatektool.simulator.build import build_simulation
-from fatektool.simulator.pty_door import PTY_SUPPORTED
-from fatektool.simulator.servers import Server, running
-
-from .programs import command, needs
+from fatektool.simulator.listen.pty import PTY_SUPPORTED
+from fatektool.simulator.listen.servers import Server, running
+from tests.parts.programs import command, needs
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

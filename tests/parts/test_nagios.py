@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 from fatektool.program.archive import save_backup
-from tests.cli.house import NEW, served
+from tests.cli.running import NEW, served
+from tests.parts.programs import PATIENCE_S, command, needs, running
 from tests.program.samples import backup
-
-from .programs import PATIENCE_S, command, needs, running
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -16,17 +16,15 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-import tests
-from tests.fleet.gateway import Hall, hall
-
-from .programs import PATIENCE_S, command, free_port, listening, needs, running
+from tests.cli.many.fleet.gateway import Hall, hall
+from tests.parts.programs import PATIENCE_S, command, free_port, listening, needs, running
+from tests.root import EXAMPLES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from tests.cli.house import Cli
+    from tests.cli.running import Cli
 
-EXAMPLES = Path(str(tests.__file__)).parent.parent / "examples"
 OPERATIONS = EXAMPLES.parent / "docs" / "operations.md"
 RULES = EXAMPLES / "prometheus" / "fatek.rules.yml"
 FLEET = {

@@ -11,26 +11,24 @@ import click
 import pytest
 import serial.tools.list_ports
 
-import tests
 from fatektool.cli.app import app
 from fatektool.program.archive import load_backup, save_backup
 from fatektool.simulator.build import build_simulation
-from fatektool.simulator.pty_door import PTY_SUPPORTED
-from fatektool.simulator.servers import Server, running
-from tests.cli.house import one_line
+from fatektool.simulator.listen.pty import PTY_SUPPORTED
+from fatektool.simulator.listen.servers import Server, running
+from tests.cli.running import one_line
+from tests.parts.gateways import ser2net, socat_device, socat_tcp, socat_udp
+from tests.parts.programs import needs
 from tests.program.samples import backup, program
-
-from .gateways import ser2net, socat_device, socat_tcp, socat_udp
-from .programs import needs
+from tests.root import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from contextlib import AbstractContextManager
 
     from fatektool.simulator.plc import SimulatedPlc
-    from tests.cli.house import Cli, Done
+    from tests.cli.running import Cli, Done
 
-ROOT = Path(str(tests.__file__)).parent.parent
 WORDS = 320
 OLD, NEW = program(WORDS, seed=1), program(WORDS, seed=2)
 CUT_AT = 3
@@ -198,7 +196,7 @@ def test_no_plc_is_at_the_end_of_a_loop(cli: Cli) -> None:
 # --- what is named ------------------------------------------------------------------------------------
 
 ELSEWHERE = {
-    "modem": "tests/modem/test_port.py",
+    "modem": "tests/transport/modem/test_port.py",
     "sim": "tests/test_main_job.py",
     "loop": "here",
 }

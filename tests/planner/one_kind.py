@@ -20,8 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fatektool.protocol.codec import Codec
-
-    from .exhaustive import Caps
+    from tests.planner.exhaustive import Caps
 
 
 class _Bytes:

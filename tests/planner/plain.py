@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.protocol.commands import ReadDiscretes, ReadRegisters, Request
 from fatektool.protocol.elements import KINDS, Element
-
-from .exhaustive import places
+from tests.planner.exhaustive import places
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

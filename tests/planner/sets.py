@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 
 from fatektool.errors import UsageError
 from fatektool.protocol.elements import KINDS, Element
-
-from .exhaustive import places_of
+from tests.planner.exhaustive import places_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -21,12 +21,11 @@ from fatektool.protocol.commands import (
     WriteRegisters,
 )
 from fatektool.protocol.elements import KINDS, Element
-from fatektool.protocol.facon import FACON
-from fatektool.protocol.mseries import MSERIES
+from fatektool.protocol.fatek.facon.codec import FACON
+from fatektool.protocol.fatek.mseries.codec import MSERIES
+from tests.planner.exhaustive import wire_bytes
+from tests.planner.sets import named
 from tests.plcs import simulated
-
-from .exhaustive import wire_bytes
-from .sets import named
 
 if TYPE_CHECKING:
     from fatektool.protocol.codec import Codec

@@ -20,11 +20,19 @@ from fatektool.protocol.commands import (
     WriteRegisters,
 )
 from fatektool.protocol.elements import Element
-from fatektool.protocol.modbus import ASCII, RTU, TCP
-from fatektool.protocol.modbus_map import parse_map
-
-from .exhaustive import Caps, Limited, least_read, least_write, places_of, wire_bytes
-from .sets import TURNAROUNDS, apart, element_sets, named, sayable, scattered, side_by_side, small_set
+from fatektool.protocol.modbus.codec import ASCII, RTU, TCP
+from fatektool.protocol.modbus.map import parse_map
+from tests.planner.exhaustive import Caps, Limited, least_read, least_write, places_of, wire_bytes
+from tests.planner.sets import (
+    TURNAROUNDS,
+    apart,
+    element_sets,
+    named,
+    sayable,
+    scattered,
+    side_by_side,
+    small_set,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -9,13 +9,12 @@ import pytest
 
 from fatektool.planner import plan_reads, plan_writes
 from fatektool.protocol.elements import Element
-from fatektool.protocol.facon import FACON
-from fatektool.protocol.modbus import RTU
-from fatektool.protocol.mseries import MSERIES
-
-from .exhaustive import READ_CAPS, WRITE_CAPS, Caps, least_read, least_write, wire_bytes
-from .one_kind import least_of_registers
-from .sets import TURNAROUNDS
+from fatektool.protocol.fatek.facon.codec import FACON
+from fatektool.protocol.fatek.mseries.codec import MSERIES
+from fatektool.protocol.modbus.codec import RTU
+from tests.planner.exhaustive import READ_CAPS, WRITE_CAPS, Caps, least_read, least_write, wire_bytes
+from tests.planner.one_kind import least_of_registers
+from tests.planner.sets import TURNAROUNDS
 
 if TYPE_CHECKING:
     from fatektool.protocol.codec import Codec

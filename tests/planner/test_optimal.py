@@ -10,11 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fatektool.planner import plan_reads, plan_writes
-from fatektool.protocol.facon import FACON
-from fatektool.protocol.mseries import MSERIES
-
-from .exhaustive import Caps, Limited, least_read, least_write, wire_bytes
-from .sets import TURNAROUNDS, apart, element_sets, named, scattered, side_by_side, small_set
+from fatektool.protocol.fatek.facon.codec import FACON
+from fatektool.protocol.fatek.mseries.codec import MSERIES
+from tests.planner.exhaustive import Caps, Limited, least_read, least_write, wire_bytes
+from tests.planner.sets import TURNAROUNDS, apart, element_sets, named, scattered, side_by_side, small_set
 
 if TYPE_CHECKING:
     from fatektool.protocol.codec import Codec

@@ -13,12 +13,11 @@ from fatektool.planner import Values, paths, plan_reads, turnaround_bytes
 from fatektool.planner.edges import Edges
 from fatektool.protocol.commands import ReadDiscretes, ReadMixed, ReadRegisters, Request
 from fatektool.protocol.elements import KINDS, Element
-from fatektool.protocol.facon import FACON, parse_frame
+from fatektool.protocol.fatek.facon.codec import FACON, parse_frame
+from tests.planner.exhaustive import places_of, wire_bytes
+from tests.planner.plain import merged, one_each
+from tests.planner.sets import TURNAROUNDS, element_sets, named, scattered, side_by_side
 from tests.plcs import Simulated, simulated
-
-from .exhaustive import places_of, wire_bytes
-from .plain import merged, one_each
-from .sets import TURNAROUNDS, element_sets, named, scattered, side_by_side
 
 AREAS = {
     "X": 256,

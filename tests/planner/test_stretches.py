@@ -11,7 +11,7 @@ from fatektool.errors import UsageError
 from fatektool.planner import plan_reads
 from fatektool.protocol.commands import ReadRegisters
 from fatektool.protocol.elements import KINDS, Element, Stretch
-from fatektool.protocol.facon import FACON, FaconCodec
+from fatektool.protocol.fatek.facon.codec import FACON, FaconCodec
 
 SYMBOLS = ["X", "M", "WM", "DWY", "R", "D", "DR", "RT", "RC", "DRC"]
 

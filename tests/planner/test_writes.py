@@ -15,11 +15,10 @@ from fatektool.planner import paths, plan_writes
 from fatektool.planner.edges import Edges
 from fatektool.protocol.commands import Request, WriteDiscretes, WriteMixed, WriteRegisters
 from fatektool.protocol.elements import KINDS, Element
-from fatektool.protocol.facon import FACON, parse_frame
+from fatektool.protocol.fatek.facon.codec import FACON, parse_frame
+from tests.planner.exhaustive import places_of
+from tests.planner.sets import TURNAROUNDS, apart, element_sets, named, scattered
 from tests.plcs import simulated
-
-from .exhaustive import places_of
-from .sets import TURNAROUNDS, apart, element_sets, named, scattered
 
 if TYPE_CHECKING:
     from fatektool.simulator.memory import Memory

@@ -14,9 +14,8 @@ from fatektool.errors import DataError, FatektoolError, UsageError
 from fatektool.program.archive import Backup, Source, load_backup, save_backup
 from fatektool.program.image import Program
 from fatektool.program.plc_record import SHAPE
-
-from .fbs import fbs_program
-from .samples import backup, document, file_of, header, plc_record, program
+from tests.program.fbs import fbs_program
+from tests.program.samples import backup, document, file_of, header, plc_record, program
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -6,8 +6,7 @@ from hypothesis import strategies as st
 
 from fatektool.program.compare import PageDifference, WordDifference, compare, compare_pages
 from fatektool.program.image import Program
-
-from .samples import changed, header, program
+from tests.program.samples import changed, header, program
 
 
 def test_a_program_is_the_same_as_itself() -> None:

@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 
 from fatektool.program.headers.families import read_header, short_document
 from fatektool.program.headers.header import Header
-
-from .samples import header
+from tests.program.samples import header
 
 
 def turned(page: bytes) -> bytes:

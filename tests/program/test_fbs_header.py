@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 from fatektool.errors import DataError
 from fatektool.program.headers.families import read_header
 from fatektool.program.image import Program
-
-from .fbs import CAPACITY, CODE, PRINTED, fbs_program, pages_of, words_of
+from tests.program.fbs import CAPACITY, CODE, PRINTED, fbs_program, pages_of, words_of
 
 WORD = st.integers(0, 0xFFFF)
 FEW = st.lists(WORD, max_size=40).map(tuple)

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from fatektool.errors import DataError, FatektoolError, FileWarning, UsageError
-from fatektool.program.files import read_bounded, require_folder, require_place, write_new, write_whole
+from fatektool.files.atomic import read_bounded, require_folder, require_place, write_new, write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -209,7 +209,7 @@ def test_a_name_that_is_free(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     """The next one that is free; and where all are taken, or none can be had, there is an end."""
     written = [write_new(tmp_path, "a", "json", NEW).name for _ in range(3)]
     assert written == ["a.json", "a-2.json", "a-3.json"]
-    monkeypatch.setattr("fatektool.program.files._MOST_NAMES", 3)
+    monkeypatch.setattr("fatektool.files.atomic._MOST_NAMES", 3)
     with pytest.raises(UsageError, match="has 3 files of the name a; move them away"):
         write_new(tmp_path, "a", "json", NEW)
     failed = fail_at(monkeypatch, "open", OSError(errno.EACCES, "Permission denied"))
@@ -330,7 +330,7 @@ def test_a_disk_that_is_really_full(small_disk: Path) -> None:
 def test_a_limit_of_file_size(tmp_path: Path) -> None:
     """Another way for a disk to be too small, which every user can try."""
     program = (
-        "import sys; from pathlib import Path; from fatektool.program.files import write_whole\n"
+        "import sys; from pathlib import Path; from fatektool.files.atomic import write_whole\n"
         "try: write_whole(Path(sys.argv[1]), b'x' * 100_000, overwrite=True)\n"
         "except Exception as error: print(type(error).__name__, error)"
     )

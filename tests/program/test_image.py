@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 
 from fatektool.errors import DataError
 from fatektool.program.image import Program, page_count, ranges
-
-from .samples import header, program
+from tests.program.samples import header, program
 
 
 @pytest.mark.parametrize(

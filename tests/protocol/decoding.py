@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fatektool.errors import FrameError
-from fatektool.protocol.facon import FACON
+from fatektool.protocol.fatek.facon.codec import FACON
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from fatektool.protocol.facon import FACON, FaconCodec
-from fatektool.protocol.mseries import MSERIES, MseriesCodec
-
-from . import mseries_vectors, vectors
-from .decoding import framed, sealed
+from fatektool.protocol.fatek.facon.codec import FACON, FaconCodec
+from fatektool.protocol.fatek.mseries.codec import MSERIES, MseriesCodec
+from tests.protocol import vectors
+from tests.protocol.decoding import framed, sealed
+from tests.protocol.fatek.mseries import vectors as mseries_vectors
 
 if TYPE_CHECKING:
-    from .vectors import Example
+    from tests.protocol.vectors import Example
 
 
 @dataclass(frozen=True)

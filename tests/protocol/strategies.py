@@ -33,8 +33,8 @@ from fatektool.protocol.commands import (
     WriteRegisters,
 )
 from fatektool.protocol.elements import KINDS, Element
-from fatektool.protocol.facon import FACON
-from fatektool.protocol.mseries import MSERIES
+from fatektool.protocol.fatek.facon.codec import FACON
+from fatektool.protocol.fatek.mseries.codec import MSERIES
 from fatektool.protocol.status import BriefStatus, DetailedStatus, StatusFlags
 
 if TYPE_CHECKING:

@@ -12,11 +12,10 @@ from fatektool.connection import CODECS
 from fatektool.errors import FrameError, PlcRefused, UsageError
 from fatektool.protocol.codec import Frame, require_commands
 from fatektool.protocol.commands import Command, Loopback, ReadPage, WritePage
-from fatektool.protocol.modbus import ModbusCodec
-
-from .decoding import decoded, drained, frames, one_frame
-from .spoken import FACON_SPOKEN, MSERIES_SPOKEN, SPOKEN, Spoken, each_protocol
-from .strategies import answers, cuts, exchanges_of, requests_of, stations
+from fatektool.protocol.modbus.codec import ModbusCodec
+from tests.protocol.decoding import decoded, drained, frames, one_frame
+from tests.protocol.spoken import FACON_SPOKEN, MSERIES_SPOKEN, SPOKEN, Spoken, each_protocol
+from tests.protocol.strategies import answers, cuts, exchanges_of, requests_of, stations
 
 if TYPE_CHECKING:
     from fatektool.protocol.commands import Request
@@ -239,7 +238,7 @@ def test_an_echo_that_may_not_pass_is_no_answer(spoken: Spoken, data: st.DataObj
 
 
 def test_every_codec_is_tested_here() -> None:
-    """Those with the papers' commands; Modbus has functions, and tests of its own in ``tests/modbus``."""
+    """Those with the papers' commands; Modbus has tests of its own in ``tests/protocol/modbus``."""
     others = {name: codec for name, codec in CODECS.items() if not isinstance(codec, ModbusCodec)}
     assert {spoken.name: spoken.codec for spoken in SPOKEN} == others
 

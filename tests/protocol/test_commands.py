@@ -28,10 +28,9 @@ from fatektool.protocol.commands import (
     WriteRegisters,
 )
 from fatektool.protocol.elements import Element
-from fatektool.protocol.facon import FACON, frame_bytes
-from fatektool.protocol.mseries import MSERIES
-
-from .decoding import one_frame, query
+from fatektool.protocol.fatek.facon.codec import FACON, frame_bytes
+from fatektool.protocol.fatek.mseries.codec import MSERIES
+from tests.protocol.decoding import one_frame, query
 
 X0, Y0, R0, DR0, WM0, DWM0 = (Element.parse(text) for text in ("X0", "Y0", "R0", "DR0", "WM0", "DWM0"))
 PAGE = bytes(range(128))

@@ -10,9 +10,8 @@ from hypothesis import strategies as st
 
 from fatektool.errors import UsageError
 from fatektool.protocol.elements import KINDS, Element
-from fatektool.protocol.facon_text import element_text, take_element
-
-from .strategies import elements
+from fatektool.protocol.fatek.facon.text import element_text, take_element
+from tests.protocol.strategies import elements
 
 Row = tuple[str, int, int, int, bytes, bytes]
 

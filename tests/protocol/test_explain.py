@@ -18,12 +18,11 @@ from fatektool.protocol.commands import (
 )
 from fatektool.protocol.elements import Element
 from fatektool.protocol.explain import Explanation, Role
-from fatektool.protocol.facon import FACON
-from fatektool.protocol.facon_explain import FaconExplainer
-
-from .decoding import framed
-from .strategies import exchanges, requests, stations
-from .vectors import EXAMPLES, FRAMES, MISPRINTS, NAMES, Example, Misprint
+from fatektool.protocol.fatek.facon.codec import FACON
+from fatektool.protocol.fatek.facon.explain import FaconExplainer
+from tests.protocol.decoding import framed
+from tests.protocol.strategies import exchanges, requests, stations
+from tests.protocol.vectors import EXAMPLES, FRAMES, MISPRINTS, NAMES, Example, Misprint
 
 if TYPE_CHECKING:
     from fatektool.protocol.commands import Request

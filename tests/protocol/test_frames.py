@@ -11,17 +11,17 @@ from hypothesis import strategies as st
 import fatektool
 from fatektool.errors import UsageError
 from fatektool.protocol import frames
-from fatektool.protocol.codecs import Codecs
 from fatektool.protocol.commands import ReadBriefStatus
 from fatektool.protocol.explain import Role
 from fatektool.protocol.explainers import EXPLAINERS
-from fatektool.protocol.modbus_pdu import crc_bytes as pymodbus_crc
+from fatektool.protocol.modbus.pdu import crc_bytes as pymodbus_crc
 from fatektool.protocol.plc_errors import MEANINGS
-
-from . import mseries_vectors, vectors
+from fatektool.protocol.registry import Codecs
+from tests.protocol import vectors
+from tests.protocol.fatek.mseries import vectors as mseries_vectors
 
 if TYPE_CHECKING:
-    from .vectors import Example
+    from tests.protocol.vectors import Example
 
 PROTOCOLS = tuple(Codecs())
 

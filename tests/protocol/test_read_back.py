@@ -24,11 +24,10 @@ from fatektool.protocol.commands import (
     WriteRegisters,
 )
 from fatektool.protocol.elements import Element
-from fatektool.protocol.facon import FACON
+from fatektool.protocol.fatek.facon.codec import FACON
 from fatektool.protocol.read_back import read_back
 from fatektool.protocol.status import BriefStatus, StatusFlags
-
-from .strategies import requests
+from tests.protocol.strategies import requests
 
 X16, R12, DR2 = Element("X", 16), Element("R", 12), Element("DR", 2)
 PAGE = bytes(range(128))

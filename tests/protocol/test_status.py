@@ -11,10 +11,9 @@ from hypothesis import strategies as st
 
 from fatektool.errors import FrameError
 from fatektool.protocol.commands import ReadBriefStatus
-from fatektool.protocol.facon_data import parse_answer
+from fatektool.protocol.fatek.facon.data import parse_answer
 from fatektool.protocol.status import BriefStatus, DetailedStatus, StatusFlags
-
-from .vectors import FBE_28MC, FBE_28MC_BYTES
+from tests.protocol.vectors import FBE_28MC, FBE_28MC_BYTES
 
 FBS_20MC_BYTES = bytes.fromhex(
     "21 01 02 40 8000 0100 0100 0064 0064 07D2 03E8 0000 1F88 1000 0100 0100" + 36 * "00"

@@ -6,11 +6,10 @@ import pytest
 
 from fatektool.errors import FrameError
 from fatektool.protocol.commands import Command
-
-from .decoding import decoded, frames, one_frame
-from .mseries_vectors import EXAMPLES as MSERIES_EXAMPLES
-from .spoken import SPOKEN, Spoken, each_example, each_frame, each_protocol
-from .vectors import EXAMPLES, MISPRINTS, Example, Misprint
+from tests.protocol.decoding import decoded, frames, one_frame
+from tests.protocol.fatek.mseries.vectors import EXAMPLES as MSERIES_EXAMPLES
+from tests.protocol.spoken import SPOKEN, Spoken, each_example, each_frame, each_protocol
+from tests.protocol.vectors import EXAMPLES, MISPRINTS, Example, Misprint
 
 
 @each_example

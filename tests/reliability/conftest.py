@@ -5,18 +5,16 @@ import os
 import signal
 import subprocess
 import sys
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import pytest
 
-import tests
-from tests.cli.house import Cli, check
+from tests.cli.running import Cli, check
+from tests.root import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-
-ROOT = Path(str(tests.__file__)).parent.parent
+    from pathlib import Path
 
 
 @pytest.fixture(autouse=True)

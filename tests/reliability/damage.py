@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 from fatektool.errors import FrameError, PlcRefused
 from fatektool.protocol.commands import ReadPage
-from fatektool.protocol.facon import FACON
+from fatektool.protocol.fatek.facon.codec import FACON
 from tests.protocol.decoding import framed, frames
 
 if TYPE_CHECKING:

@@ -28,11 +28,11 @@ import traceback
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, Self
 
-import fatektool.cli.restore
-import fatektool.cli.verify
+import fatektool.cli.programs.restore
+import fatektool.cli.programs.verify
 import fatektool.connection
 import fatektool.inventory.entries
-import fatektool.jobs.verify
+import fatektool.jobs.programs.verify
 import fatektool.transport.open
 import fatektool.transport.tcp  # noqa: F401  # all of these so that no child has to load them
 from fatektool.cli import run

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from fatektool.client import Plc
 from fatektool.connection import CODECS, usual_format
-from fatektool.link import Link
+from fatektool.exchange.link import Link
 from fatektool.protocol.elements import Element
 from fatektool.simulator.build import Simulation, build_simulation
 from fatektool.transport.base import LineSettings

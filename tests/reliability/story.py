@@ -11,23 +11,22 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fatektool.errors import FatektoolError, RestoreIncomplete
-from fatektool.jobs.backup import backup
-from fatektool.jobs.loopback import run_loopback
-from fatektool.jobs.loopback_result import LoopbackPlan
-from fatektool.jobs.reading import MOST_PASSES
-from fatektool.jobs.restore import restore
-from fatektool.jobs.scan import scan
-from fatektool.jobs.scan_result import Setting
-from fatektool.jobs.selection import parse_items
-from fatektool.jobs.snapshot import raw_of, take_snapshot
-from fatektool.jobs.snapshot_apply import apply_plan, plan_apply
-from fatektool.jobs.snapshot_spec import items_of
+from fatektool.jobs.elements.selection import parse_items
+from fatektool.jobs.linetest.loopback.result import LoopbackPlan
+from fatektool.jobs.linetest.loopback.run import run_loopback
+from fatektool.jobs.linetest.scan import scan
+from fatektool.jobs.linetest.scan_result import Setting
+from fatektool.jobs.programs.backup import backup
+from fatektool.jobs.programs.reading import MOST_PASSES
+from fatektool.jobs.programs.restore import restore
+from fatektool.jobs.programs.verify import verify
+from fatektool.jobs.snapshots.apply import apply_plan, plan_apply
+from fatektool.jobs.snapshots.snapshot import raw_of, take_snapshot
+from fatektool.jobs.snapshots.spec import items_of
 from fatektool.jobs.status import read_status
-from fatektool.jobs.verify import verify
 from fatektool.program.archive import load_backup
 from tests.program.samples import backup as backup_of
-
-from .rig import DISCRETES, NEAR, NEW, OLD, PAGES, REGISTERS, Rig
+from tests.reliability.rig import DISCRETES, NEAR, NEW, OLD, PAGES, REGISTERS, Rig
 
 if TYPE_CHECKING:
     from collections.abc import Callable

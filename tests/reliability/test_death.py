@@ -15,16 +15,15 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from fatektool.program.archive import load_backup, save_backup
-from tests.cli.house import Door, one_line, served
+from tests.cli.running import Door, one_line, served
 from tests.program.samples import backup, program
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fatektool.program.image import Program
-    from tests.cli.house import Cli
-
-    from .conftest import Life, Mortals
+    from tests.cli.running import Cli
+    from tests.reliability.conftest import Life, Mortals
 
 WORDS, PAGES = 256, 5
 OLD, NEW, OTHER = (program(WORDS, seed=seed) for seed in (1, 2, 3))

@@ -7,15 +7,14 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from fatektool.jobs.scan import scan
-from fatektool.jobs.scan_result import Setting
-from fatektool.protocol.facon import FACON
+from fatektool.jobs.linetest.scan import scan
+from fatektool.jobs.linetest.scan_result import Setting
+from fatektool.protocol.fatek.facon.codec import FACON
 from fatektool.simulator.faults import BIT_ERRORS, FAULT_KINDS, POWER_CUT
 from fatektool.transport.base import LineSettings
 from fatektool.transport.memory import MemoryTransport
-
-from .rig import Rig
-from .story import JOBS
+from tests.reliability.rig import Rig
+from tests.reliability.story import JOBS
 
 if TYPE_CHECKING:
     from pathlib import Path

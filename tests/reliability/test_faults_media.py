@@ -12,17 +12,17 @@ import pytest
 from fatektool.program.archive import load_backup, save_backup
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.faults import BIT_ERRORS, FAULT_KINDS, POWER_CUT
-from fatektool.simulator.servers import Server
+from fatektool.simulator.listen.servers import Server
 from tests.hurry import hurried
+from tests.plant import snapshot_of
 from tests.program.samples import backup, program
-from tests.registers.plant import snapshot_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
     from fatektool.simulator.plc import SimulatedPlc
-    from tests.cli.house import Cli, Done
+    from tests.cli.running import Cli, Done
 
     Look = Callable[[Done, SimulatedPlc, Path], None]
 

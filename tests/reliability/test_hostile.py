@@ -12,22 +12,22 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from fatektool.errors import DataError
-from fatektool.jobs.snapshot import parse_snapshot
+from fatektool.files.strict_json import read_json
+from fatektool.files.strict_toml import MOST_PARTS, read_toml
+from fatektool.jobs.snapshots.snapshot import parse_snapshot
 from fatektool.program.archive import Backup, save_backup
-from fatektool.program.strict_json import read_json
-from fatektool.program.strict_toml import MOST_PARTS, read_toml
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.state import dump_state, parse_state
-from tests.cli.house import COMMAND, environment, one_line
+from tests.cli.running import COMMAND, environment, one_line
 from tests.guard import GUARD_S
+from tests.plant import snapshot_of
 from tests.program.samples import backup, document, program
-from tests.registers.plant import snapshot_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from tests.cli.house import Cli
+    from tests.cli.running import Cli
 
 OLD, NEW = program(64, seed=1), program(64, seed=2)
 GIB = 1 << 30
@@ -254,7 +254,7 @@ def test_the_command_that_goes_on_names_the_file_as_one_word(name: str, place: P
     build_simulation(ladder_words=64, program=OLD.pages, state=place / "plc.state").save_if_changed()
     words = ["restore", f"./{name}", "-p", f"sim:{place / 'plc.state'}", "--yes", "--json"]
     script = (
-        "import sys; from fatektool.jobs import rewrite; from fatektool.errors import LineError\n"
+        "import sys; from fatektool.jobs.programs import rewrite; from fatektool.errors import LineError\n"
         "def fail(*_): raise LineError('the line broke')\n"
         "rewrite.Rewrite._prove = fail\n"
         "from fatektool.cli import main; main(sys.argv[1:])"

@@ -15,26 +15,26 @@ import click
 import pytest
 
 from fatektool.cli.app import app
-from fatektool.cli.simulate import _host_and_port
+from fatektool.cli.tools.simulate import _host_and_port
 from fatektool.client import Plc
 from fatektool.errors import LineReadOnly, NoAnswer
-from fatektool.link import Link
+from fatektool.exchange.link import Link
 from fatektool.protocol import commands as requests
 from fatektool.protocol.commands import Control, Loopback, Request
 from fatektool.protocol.elements import Element
-from fatektool.protocol.facon import FACON
+from fatektool.protocol.fatek.facon.codec import FACON
 from fatektool.simulator.build import build_simulation
-from fatektool.simulator.servers import Server
+from fatektool.simulator.listen.servers import Server
 from fatektool.transport.base import LineSettings
 from fatektool.transport.memory import MemoryTransport
 from fatektool.transport.trace_reader import read_trace
-from tests.cli.house import Press, one_line
-from tests.cli.test_trace import commands
+from tests.cli.running import Press, one_line
+from tests.cli.shared.test_trace import commands
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from tests.cli.house import Cli
+    from tests.cli.running import Cli
 
 READING = """\
 backup x.json

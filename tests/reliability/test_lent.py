@@ -15,11 +15,10 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from fatektool.simulator.build import build_simulation
-from fatektool.simulator.servers import Server, running
+from fatektool.simulator.listen.servers import Server, running
 from fatektool.transport.lock import PortLock
-from tests.cli.house import Press, check, process, started
-
-from .test_two import REGISTERS, line, value
+from tests.cli.running import Press, check, process, started
+from tests.reliability.test_two import REGISTERS, line, value
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -7,13 +7,12 @@ import os
 import pytest
 
 from fatektool.errors import FatektoolError
-from fatektool.jobs.backup import backup
-from fatektool.protocol.facon import parse_frame
+from fatektool.jobs.programs.backup import backup
+from fatektool.protocol.fatek.facon.codec import parse_frame
 from fatektool.transport.base import LineSettings
 from tests.protocol.decoding import framed
-
-from .damage import DAMAGES, count
-from .rig import OLD, Rig
+from tests.reliability.damage import DAMAGES, count
+from tests.reliability.rig import OLD, Rig
 
 ANSWERS = 2000
 BACKUPS = 100
@@ -54,7 +53,7 @@ def test_a_backup_in_one_pass_may_be_wrong_and_one_in_two_is_not() -> None:
 def test_the_driver_is_asked_to_check_parity(before: str) -> None:
     import termios
 
-    from fatektool.transport.serial_settings import check_parity
+    from fatektool.transport.serial_line.settings import check_parity
 
     master, slave = os.openpty()
     try:

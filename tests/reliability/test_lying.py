@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from fatektool.errors import DataError, PlcNotReady, RestoreIncomplete
-from fatektool.jobs.backup import backup as back_up
-from fatektool.jobs.restore import RestoreOptions, restore
+from fatektool.jobs.programs.backup import backup as back_up
+from fatektool.jobs.programs.restore import RestoreOptions, restore
 from fatektool.program.archive import load_backup, save_backup
 from fatektool.simulator.build import build_plcs
-from tests.cli.house import one_line, served
+from tests.cli.running import one_line, served
 from tests.jobs.bench import Bench
 from tests.program.samples import backup, changed, program
 
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from fatektool.jobs.restore import RestoreResult
+    from fatektool.jobs.programs.restore import RestoreResult
     from fatektool.program.image import Program
     from fatektool.simulator.plc import SimulatedPlc
-    from tests.cli.house import Cli, Door
+    from tests.cli.running import Cli, Door
 
 WORDS, PAGES = 256, 5
 OLD, NEW, OTHER = (program(WORDS, seed=seed) for seed in (1, 2, 3))

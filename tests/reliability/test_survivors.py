@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from fatektool.errors import DataError, FatektoolError, LineError, RestoreIncomplete, UsageError
-from fatektool.jobs.backup import backup
-from fatektool.jobs.reading import MOST_PASSES
-from fatektool.jobs.restore import RestoreOptions, RestoreResult, restore
-from fatektool.jobs.safety import find_way_back, save_safety_backup
+from fatektool.files.atomic import file_error, read_bounded, require_folder, require_place
+from fatektool.jobs.programs.backup import backup
+from fatektool.jobs.programs.reading import MOST_PASSES
+from fatektool.jobs.programs.restore import RestoreOptions, RestoreResult, restore
+from fatektool.jobs.programs.safety import find_way_back, save_safety_backup
 from fatektool.program.archive import Backup, load_backup, save_backup
-from fatektool.program.files import file_error, read_bounded, require_folder, require_place
 from fatektool.program.headers.families import read_header
 from fatektool.program.image import Program
 from fatektool.program.plc_record import fault_of

@@ -19,16 +19,16 @@ from fatektool.errors import LineError
 from fatektool.protocol.elements import Element
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.faults import SpoiledAnswer
-from fatektool.simulator.pty_door import PTY_SUPPORTED
-from fatektool.simulator.servers import Server, running
-from tests.cli.house import one_line, process, started
+from fatektool.simulator.listen.pty import PTY_SUPPORTED
+from fatektool.simulator.listen.servers import Server, running
+from tests.cli.running import one_line, process, started
 from tests.guard import GUARD_S
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fatektool.simulator.build import Simulation
-    from fatektool.simulator.slave import Request, Slave
+    from fatektool.simulator.slaves.base import Request, Slave
 
 pytestmark = pytest.mark.skipif(not PTY_SUPPORTED, reason="needs ptys and POSIX locks")
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.cli.house import Cli, Press
+from tests.cli.running import Cli, Press
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

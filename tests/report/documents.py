@@ -6,7 +6,7 @@ import math
 from random import Random
 from typing import Any
 
-from fatektool.cli.documents import program_differences
+from fatektool.cli.shared.documents import program_differences
 from fatektool.program.image import Program
 from fatektool.project.comparison import compare_programs
 from fatektool.report.loopback import loopback_report
@@ -14,7 +14,7 @@ from fatektool.report.program import diff_report, verify_report
 from fatektool.report.rounds import Rounds
 from fatektool.report.series import Place, series_report
 from fatektool.report.snapshot import snapshot_report
-from tests.cli.house import check
+from tests.cli.running import check
 from tests.program.samples import changed, program
 
 TIME = "2026-11-22T03:15:00Z"

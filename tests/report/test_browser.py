@@ -14,10 +14,9 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from fatektool.report import style
-
-from .browser import Browser, Page
-from .documents import loopback, reports, snapshot
-from .tree import parse
+from tests.report.browser import Browser, Page
+from tests.report.documents import loopback, reports, snapshot
+from tests.report.tree import parse
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 
 from fatektool.report.scale import Scale, ends, labels, stamp, ticks, time_ticks
 from fatektool.report.svg import WIDTH, Columns, columns, line, timing
-
-from .tree import Node, parse
+from tests.report.tree import Node, parse
 
 FINITE = st.floats(allow_nan=False, allow_infinity=False, min_value=-1.7e308, max_value=1.7e308)
 

@@ -6,7 +6,6 @@ import json
 import re
 import shutil
 import signal
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -15,12 +14,14 @@ from fatektool.report.program import MOST_PAGES
 from fatektool.report.rounds import MOST_GAPS, MOST_POINTS
 from fatektool.report.series import MOST_CHARTS, MOST_DISCRETES
 from fatektool.report.snapshot import MOST_ROWS
-from tests.cli.house import NEW, OLD, Cli, Done, Press, check, one_line, process, started
-from tests.registers.plant import cut_after, spied
-
-from .tree import Node, facts, parse, rows, texts
+from tests.cli.running import NEW, OLD, Cli, Done, Press, check, one_line, process, started
+from tests.plant import cut_after, spied
+from tests.report.tree import Node, facts, parse, rows, texts
+from tests.root import ROOT
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from fatektool.program.image import Program
 
 
@@ -116,7 +117,7 @@ def test_watch_whose_reader_has_seen_enough(press: Press) -> None:
 
 
 def test_watch_over_a_line_that_dies(press: Press, cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("fatektool.cli.watch.time.sleep", lambda _: None)
+    monkeypatch.setattr("fatektool.cli.elements.watch.time.sleep", lambda _: None)
     cut_after(monkeypatch, 12)
     done = cli("watch", "R0", "--retries", "0", "--timeout", "0.05", "--report", "x.html", "--force")
     assert done.code == 3
@@ -130,7 +131,7 @@ def test_watch_over_a_line_that_dies(press: Press, cli: Cli, monkeypatch: pytest
 
 
 def test_watch_over_a_line_that_comes_back(press: Press, cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("fatektool.cli.watch.time.sleep", lambda _: None)
+    monkeypatch.setattr("fatektool.cli.elements.watch.time.sleep", lambda _: None)
     seen: list[bytes] = []
     spied(monkeypatch, seen.append, lambda: not 8 < len(seen) < 16)
     words = ["--count", "6", "--retries", "0", "--timeout", "0.05", "--report", "x.html", "--force"]
@@ -146,7 +147,7 @@ def test_a_report_that_cannot_be_written_in_the_end(
     press: Press, cli: Cli, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The failure of the line is what counts; that there is no report is a warning."""
-    monkeypatch.setattr("fatektool.cli.watch.time.sleep", lambda _: None)
+    monkeypatch.setattr("fatektool.cli.elements.watch.time.sleep", lambda _: None)
     folder = press.folder / "gone"
     folder.mkdir()
     calls = []
@@ -263,7 +264,7 @@ def test_a_target_that_cannot_be_printed(place: Path) -> None:
 def test_the_commands_of_the_documentation(press: Press, cli: Cli) -> None:
     shutil.copy(press.old, press.folder / "press.json")
     shutil.copy(press.new, press.folder / "monday.json")
-    text = (Path(__file__).parents[2] / "docs" / "reports.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "reports.md").read_text(encoding="utf-8")
     lines = re.findall(r"^\$ fatektool (.*)$", text, re.MULTILINE)
     assert {line.split()[0] for line in lines} == {"verify", "diff", "loopback", "watch", "snapshot"}
     for line in lines:

@@ -16,9 +16,8 @@ from fatektool.report.rounds import Rounds
 from fatektool.report.series import series_report
 from fatektool.report.snapshot import snapshot_report
 from tests.program.samples import changed, program
-
-from .documents import TIME, diffed, loopback, place, snapshot, verified
-from .tree import parse
+from tests.report.documents import TIME, diffed, loopback, place, snapshot, verified
+from tests.report.tree import parse
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -13,9 +13,8 @@ from fatektool.report.rounds import MOST_GAPS, Rounds
 from fatektool.report.series import MOST_CHARTS, series_report
 from fatektool.report.snapshot import MOST_ROWS, snapshot_report
 from tests.program.samples import changed, program
-
-from .documents import TIME, dead_line, diffed, loopback, place, series, snapshot, verified
-from .tree import Node, facts, parse, rows, section, texts
+from tests.report.documents import TIME, dead_line, diffed, loopback, place, series, snapshot, verified
+from tests.report.tree import Node, facts, parse, rows, section, texts
 
 if TYPE_CHECKING:
     from fatektool.program.image import Program

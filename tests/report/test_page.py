@@ -13,9 +13,8 @@ from fatektool.report import style
 from fatektool.report.page import LONGEST_START, is_report
 from fatektool.report.scale import Scale
 from fatektool.version import __version__
-
-from .documents import reports
-from .tree import Node, parse
+from tests.report.documents import reports
+from tests.report.tree import Node, parse
 
 PAGES = reports()
 TREES = {name: parse(html) for name, html in PAGES.items()}

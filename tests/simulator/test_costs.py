@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from fatektool.simulator.build import build_simulation
-from fatektool.simulator.pty_door import PTY_SUPPORTED
-from fatektool.simulator.servers import Server, running
-
-from .doors import ANSWER, ASK, connected, read
-from .wire import frame
+from fatektool.simulator.listen.pty import PTY_SUPPORTED
+from fatektool.simulator.listen.servers import Server, running
+from tests.simulator.listen.listeners import ANSWER, ASK, connected, read
+from tests.simulator.wire import frame
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -102,7 +101,7 @@ def test_over_a_pty_without_a_pace_the_same(tmp_path: Path) -> None:
 
 def test_a_page_is_put_into_its_frame_once() -> None:
     """A program that 500 clients read is turned into hex once."""
-    from fatektool.simulator.facon_slave import _page_answer
+    from fatektool.simulator.slaves.facon.slave import _page_answer
 
     simulation = build_simulation(ladder_words=8192)
     asks = [frame(f"4F{page:04X}") for page in range(129)]

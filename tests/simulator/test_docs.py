@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import pytest
 
 from fatektool.simulator import faults
 from fatektool.simulator.models import MODELS
-from fatektool.simulator.slaves import SLAVES
+from fatektool.simulator.slaves.registry import SLAVES
+from tests.root import ROOT
 
-PAGE = (Path(__file__).parents[2] / "docs" / "simulator.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "simulator.md").read_text(encoding="utf-8")
 
 
 def rows(heading: str) -> dict[str, str]:

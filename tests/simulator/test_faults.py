@@ -7,8 +7,7 @@ import pytest
 from fatektool.errors import UsageError
 from fatektool.simulator.build import Simulation, build_line, build_simulation
 from fatektool.simulator.faults import FAULT_KINDS, PROBABILITY_KINDS, parse_faults
-
-from .wire import frame, sent
+from tests.simulator.wire import frame, sent
 
 ASK, ANSWER = frame("4601R00007"), frame("4600000")
 PAGE_HEX = bytes(range(128)).hex().upper()

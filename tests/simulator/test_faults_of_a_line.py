@@ -7,9 +7,8 @@ import pytest
 from fatektool.errors import UsageError
 from fatektool.simulator.build import Simulation, build_simulation
 from fatektool.simulator.faults import parse_faults
-
-from . import mseries_wire
-from .wire import frame, sent
+from tests.simulator.slaves import mseries_wire
+from tests.simulator.wire import frame, sent
 
 LOOPBACK = frame("4E" + "x" * 200)
 PROTOCOLS = {

@@ -12,12 +12,11 @@ from hypothesis import strategies as st
 
 from fatektool.errors import UsageError
 from fatektool.simulator.build import build_simulation
-from fatektool.simulator.pty_door import PTY_SUPPORTED
-from fatektool.simulator.servers import Server, running
+from fatektool.simulator.listen.pty import PTY_SUPPORTED
+from fatektool.simulator.listen.servers import Server, running
 from tests.guard import GUARD_S
-
-from .doors import ANSWER, ASK, connected, read, tcp
-from .wire import frame, sent
+from tests.simulator.listen.listeners import ANSWER, ASK, connected, read, tcp
+from tests.simulator.wire import frame, sent
 
 if TYPE_CHECKING:
     from pathlib import Path

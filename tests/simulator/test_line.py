@@ -7,11 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fatektool.simulator.build import build_line, build_simulation
-from fatektool.simulator.facon_slave import FaconSlave
 from fatektool.simulator.line import WHOLE_ANSWERS, SimulatedLine
 from fatektool.simulator.plc import SimulatedPlc
-
-from .wire import frame, sent
+from fatektool.simulator.slaves.facon.slave import FaconSlave
+from tests.simulator.wire import frame, sent
 
 STATUS, STATUS_ANSWER = frame("40"), frame("400005400")
 PAGE = frame("4F0000")

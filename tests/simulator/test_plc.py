@@ -13,7 +13,7 @@ from fatektool.simulator.elements import KINDS, Kind
 from fatektool.simulator.memory import DiscreteAction
 from fatektool.simulator.models import MODELS
 from fatektool.simulator.plc import SimulatedPlc
-from fatektool.simulator.program_image import demonstration_program, header_page
+from fatektool.simulator.program.facon_program import demonstration_program, header_page
 from fatektool.simulator.refusal import Refusal, RefusalCode
 
 if TYPE_CHECKING:

@@ -10,17 +10,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fatektool.errors import DataError, UsageError
+from fatektool.simulator.listen.servers import Server, running
 from fatektool.simulator.replay import Recorded, Replay
-from fatektool.simulator.servers import Server, running
-
-from .doors import connected, place, read
-from .wire import frame
+from tests.simulator.listen.listeners import connected, place, read
+from tests.simulator.wire import frame
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from fatektool.simulator.slave import Request
+    from fatektool.simulator.slaves.base import Request
 
 STATUS, STOPPED, RUNS = frame("40"), frame("400005400"), frame("400015400")
 PAGE = frame("4F0005")

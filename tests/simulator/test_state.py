@@ -14,10 +14,9 @@ from fatektool.simulator.build import build_line, build_plcs, build_simulation
 from fatektool.simulator.memory import DiscreteAction
 from fatektool.simulator.models import MODELS
 from fatektool.simulator.plc import SimulatedPlc
-from fatektool.simulator.program_image import demonstration_program
+from fatektool.simulator.program.facon_program import demonstration_program
 from fatektool.simulator.state import StateFile, dump_state, parse_state
-
-from .wire import frame, sent
+from tests.simulator.wire import frame, sent
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from fatektool.simulator.line import SimulatedLine
-    from fatektool.simulator.slave import Slave
+    from fatektool.simulator.slaves.base import Slave
 
 
 def frame(data: str, *, station: int = 1) -> bytes:

@@ -12,6 +12,6 @@ if TYPE_CHECKING:
 def lock_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder for lock files of this test alone."""
     folder = tmp_path / "locks"
-    folder.mkdir()
+    folder.mkdir(exist_ok=True)
     monkeypatch.setenv("FATEKTOOL_LOCK_DIR", str(folder))
     return folder

@@ -12,7 +12,7 @@ import pytest
 
 from fatektool.transport.base import LineSettings
 from fatektool.transport.memory import MemoryTransport
-from fatektool.transport.serial_port import DeviceTransport, SerialTransport, open_serial
+from fatektool.transport.serial_line.port import DeviceTransport, SerialTransport, open_serial
 from fatektool.transport.tcp import TcpTransport
 from fatektool.transport.udp import UdpTransport
 

@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING
 import pytest
 
 from fatektool.errors import TransportClosed, TransportTimeout
-
-from .media import MEDIA, PATIENCE_S, ask_twice
+from tests.transport.media import MEDIA, PATIENCE_S, ask_twice
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from contextlib import AbstractContextManager
 
-    from .media import Medium
+    from tests.transport.media import Medium
 
 
 @pytest.fixture(params=MEDIA)

@@ -14,9 +14,9 @@ import pytest
 
 from fatektool.cli import run
 from fatektool.errors import LineError
-from fatektool.transport import serial_port
 from fatektool.transport.base import LineSettings
-from fatektool.transport.serial_port import open_serial
+from fatektool.transport.serial_line import port as serial_port
+from fatektool.transport.serial_line.port import open_serial
 
 if sys.platform != "linux":
     pytest.skip("the setting is Linux's", allow_module_level=True)

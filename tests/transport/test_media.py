@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 import pytest
 
 from fatektool.errors import PortBusy, TransportClosed, TransportTimeout
-from fatektool.transport import serial_port, sockets
+from fatektool.transport import sockets
 from fatektool.transport.base import DRAIN_LIMIT, LineSettings
 from fatektool.transport.memory import MemoryTransport
-from fatektool.transport.serial_port import open_serial
+from fatektool.transport.serial_line import port as serial_port
+from fatektool.transport.serial_line.port import open_serial
 from fatektool.transport.tcp import TcpTransport
 from fatektool.transport.udp import UdpTransport
-
-from .media import (
+from tests.transport.media import (
     LINE,
     PATIENCE_S,
     MemoryPeer,
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from contextlib import AbstractContextManager
 
-from .media import Medium
+from tests.transport.media import Medium
 
 MORE_THAN_ANY_BUFFER = bytes(1 << 25)
 

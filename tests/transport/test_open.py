@@ -15,8 +15,7 @@ from fatektool.transport.lock import PortLock
 from fatektool.transport.open import open_transport
 from fatektool.transport.sockets import resolve
 from fatektool.transport.target import Target
-
-from .media import LINE, listening, needs_pty
+from tests.transport.media import LINE, listening, needs_pty
 
 if TYPE_CHECKING:
     from pathlib import Path

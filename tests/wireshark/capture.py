@@ -9,10 +9,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tests.root import ROOT
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-SCRIPT = Path(__file__).parents[2] / "examples" / "wireshark" / "fatek.lua"
+SCRIPT = ROOT / "examples" / "wireshark" / "fatek.lua"
 USER0, RAW_IP = 147, 101
 STEP_NS = 125_000_000
 INFO, PROTOCOL, EXPERT = "_ws.col.Info", "_ws.col.Protocol", "_ws.expert.message"

@@ -5,7 +5,7 @@ import shutil
 
 import pytest
 
-from .capture import Tshark
+from tests.wireshark.capture import Tshark
 
 
 @pytest.fixture(scope="session")

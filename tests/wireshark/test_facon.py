@@ -6,10 +6,21 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from .capture import EXPERT, FACON, INFO, PROTOCOL, RECEIVED, SENT, Case, Packet, cases_in, seen
+from tests.wireshark.capture import (
+    EXPERT,
+    FACON,
+    INFO,
+    PROTOCOL,
+    RECEIVED,
+    SENT,
+    Case,
+    Packet,
+    cases_in,
+    seen,
+)
 
 if TYPE_CHECKING:
-    from .capture import Tshark
+    from tests.wireshark.capture import Tshark
 
 PAGE = b"".join(b"%02X" % (byte % 256) for byte in range(128))
 PAGE_SUM = b"%02X" % (sum(b"\x02014F0" + PAGE) % 256)

@@ -6,10 +6,21 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from .capture import EXPERT, INFO, MSERIES, PROTOCOL, RECEIVED, SENT, Case, Packet, cases_in, seen
+from tests.wireshark.capture import (
+    EXPERT,
+    INFO,
+    MSERIES,
+    PROTOCOL,
+    RECEIVED,
+    SENT,
+    Case,
+    Packet,
+    cases_in,
+    seen,
+)
 
 if TYPE_CHECKING:
-    from .capture import Tshark
+    from tests.wireshark.capture import Tshark
 
 
 def case(name: str, direction: int, text: str, fields: dict[str, str]) -> Case:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 from typing import TYPE_CHECKING
 
-from .capture import (
+from tests.wireshark.capture import (
     ASCII,
     EXPERT,
     FACON,
@@ -22,7 +22,7 @@ from .capture import (
 )
 
 if TYPE_CHECKING:
-    from .capture import Packet, Tshark
+    from tests.wireshark.capture import Packet, Tshark
 
 ASKS, ANSWERS = b"\x02014603R0001275\x03", b"\x020146010A57FC4000189\x03"
 PC, PLC = bytes([192, 168, 2, 1]), bytes([192, 168, 2, 3])

@@ -9,16 +9,15 @@ from fatektool.cli import run
 from fatektool.program.archive import load_backup
 from fatektool.protocol.explain import Role
 from fatektool.protocol.explainers import EXPLAINERS
-from tests.cli.house import served
-
-from .capture import FACON, INFO, MSERIES, RECEIVED, SCRIPT, SENT, capture, traced
+from tests.cli.running import served
+from tests.wireshark.capture import FACON, INFO, MSERIES, RECEIVED, SCRIPT, SENT, capture, traced
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     import pytest
 
-    from .capture import Packet, Tshark
+    from tests.wireshark.capture import Packet, Tshark
 
 
 def values(packets: list[Packet], name: str) -> list[str]:

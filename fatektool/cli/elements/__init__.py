@@ -1,0 +1,1 @@
+"""Commands for elements: read, write, snapshot, watch, discrete."""

@@ -1,0 +1,298 @@
+"""``snapshot``: a PLC's data to JSON and others; ``snapshot diff``, ``snapshot apply``."""
+
+from __future__ import annotations
+
+import os
+import re
+from functools import wraps
+from math import isnan
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, TypeVar
+
+import click
+
+from fatektool.cli.elements.read import SELECTION, shown, warn_of
+from fatektool.cli.elements.snapshot_apply import apply_command
+from fatektool.cli.programs.program_files import comments_for, comments_options
+from fatektool.cli.shared.file_path import standard
+from fatektool.cli.shared.modbus_map import modbus_map_option
+from fatektool.cli.shared.options import PATH, Connection, connection_options_but_format, voice_options
+from fatektool.cli.shared.places import require_folder_for, require_free
+from fatektool.cli.shared.report import report_option, write_snapshot_report
+from fatektool.errors import PlcError, UsageError
+from fatektool.files.atomic import read_bounded, write_whole
+from fatektool.jobs.elements.selection import parse_items
+from fatektool.jobs.snapshots.comments import snapshot_with_comments
+from fatektool.jobs.snapshots.compare import Change, compare_snapshots
+from fatektool.jobs.snapshots.formats import FORMATS, SUFFIXES, as_json, as_ndjson, as_prometheus
+from fatektool.jobs.snapshots.snapshot import load_snapshot, take_all, take_snapshot
+from fatektool.jobs.snapshots.spec import MAX_SPEC, Spec, items_of, parse_spec
+from fatektool.jobs.snapshots.store import Keep, append_line, encoded, require_lines, save_dated
+from fatektool.protocol.commands import Command
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from fatektool.cli.shared.output import Voice
+
+_LINE: Final = re.compile(r"\d[A-Za-z][\d.]{1,3}", re.ASCII)
+_LOOKED_AT: Final = 200
+_SERIES: Final = {"json", "ndjson"}
+_BACKUP: Final = b'"fatektool.backup/'
+F = TypeVar("F", bound="Callable[..., Any]")
+
+
+def either_format(function: F) -> F:
+    """``--format`` names the snapshot's form or the line's; both may be given, in any order."""
+
+    @wraps(function)
+    def with_formats(*args: Any, formats: tuple[str, ...], **rest: Any) -> Any:
+        forms = [text for text in formats if text.lower() in FORMATS]
+        lines = [text for text in formats if text.lower() not in FORMATS]
+        if len(forms) > 1 or len(lines) > 1:
+            raise UsageError(
+                f"--format {' '.join(formats)}: expected one of {', '.join(FORMATS)}, "
+                f"and for the line one such as 7E1"
+            )
+        if lines and not _LINE.fullmatch(lines[0]):
+            raise UsageError(
+                f"--format {lines[0]}: expected one of {', '.join(FORMATS)}, or a line's format such as 8N1"
+            )
+        form = forms[0].lower() if forms else None
+        return function(*args, form=form, line_format=lines[0] if lines else None, **rest)
+
+    return with_formats  # type: ignore[return-value]  # click's decorators hand back what they get
+
+
+class SnapshotGroup(click.Group):
+    """``snapshot ELEMENTS`` takes one; ``snapshot diff`` and ``snapshot apply`` are commands."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Put the command's name in front of elements and options."""
+        if not args or (args[0] not in self.commands and args[0] not in {"--help", "-h"}):
+            args = ["take", *args]
+        return super().parse_args(ctx, args)
+
+
+@click.group(
+    "snapshot",
+    cls=SnapshotGroup,
+    epilog="Example: fatektool snapshot R0-R99 D4:f32 -p sim: -o snapshots/ --keep 30d",
+)
+def snapshot_command() -> None:
+    """Read a PLC's data to JSON, compare snapshots, put one back.
+
+    'fatektool snapshot ELEMENTS…' is short for 'fatektool snapshot take ELEMENTS…': see 'fatektool snapshot
+    take --help' for --spec, --all, --output, --append, --format and --keep.
+    """
+
+
+@snapshot_command.command(
+    "take",
+    epilog="Example: fatektool snapshot --spec press.toml -p /dev/ttyUSB0 --append press.ndjson --keep 90d",
+    help=f"Read data from the PLC, in the fewest bytes.\n\n{SELECTION}",
+)
+@click.argument("elements", nargs=-1)
+@click.option("--spec", type=PATH, metavar="FILE.toml", help="What to read, with names, scales and units.")
+@click.option("--group", "groups", multiple=True, help="Only items of this group of --spec; repeat for more.")
+@click.option("--all", "whole", is_flag=True, help="All that the PLC says it has.")
+@click.option(
+    "-o",
+    "--output",
+    type=str,
+    metavar="FILE|DIR/",
+    help="Into FILE, or into a dated file in DIR; else, and for -, stdout.",
+)
+@click.option("--append", type=PATH, metavar="FILE.ndjson", help="As one line at the end of FILE.")
+@click.option(
+    "--format",
+    "formats",
+    multiple=True,
+    metavar="json|ndjson|csv|influx|prometheus",
+    help="How the snapshot is written, by default as FILE's ending says, else json; "
+    "the line's format, such as 8N1, may stand here too.",
+)
+@click.option(
+    "--keep", metavar="N|DAYSd", help="Keep N snapshots, or those of so many days, in DIR or FILE.ndjson."
+)
+@comments_options
+@report_option
+@either_format
+@connection_options_but_format
+@modbus_map_option
+def take_command(
+    elements: tuple[str, ...],
+    connection: Connection,
+    voice: Voice,
+    *,
+    spec: Path | None,
+    groups: tuple[str, ...],
+    whole: bool,
+    output: str | None,
+    append: Path | None,
+    form: str | None,
+    keep: str | None,
+    report: Path | None,
+    comments: Path | None,
+    encoding: str | None,
+) -> int:
+    """Read data from the PLC."""
+    texts = comments_for(connection, comments, voice, encoding)
+    items = selected(elements, spec, groups, whole=whole).items
+    kept = None if keep is None else Keep.parse(keep)
+    output = None if output is None else standard(output)
+    to_stdout = output == "-" or (output is None and append is None)
+    output = None if output == "-" else output
+    folder = _folder(output)
+    form = _form(form, voice, output, append, to_stdout=to_stdout)
+    if kept is not None and folder is None and append is None:
+        raise UsageError("--keep goes with -o DIR/ or --append FILE")
+    if report is not None and folder is not None and form not in _SERIES:
+        raise UsageError(
+            f"--report shows the snapshots in {folder}: expected --format json or ndjson, got {form}"
+        )
+    _require_places(output, folder, append, kept, voice)
+    with connection.open(voice, needs=(Command.DETAILED_STATUS,) if whole else ()) as plc:
+        snapshot = take_all(plc) if whole else take_snapshot(plc, items)
+    snapshot = snapshot_with_comments(snapshot, texts)
+    if form == "prometheus":
+        text = as_prometheus(snapshot, _name(output, folder, spec))
+    else:
+        text = FORMATS[form](snapshot)
+    if folder is not None:
+        voice.detail(f"saved {save_dated(snapshot, text, folder, suffix=SUFFIXES[form], keep=kept)}")
+    elif output is not None:
+        write_whole(Path(output), encoded(text), overwrite=True)
+    if append is not None:
+        wait_s = max(60.0, connection.lock_wait_s)
+        append_line(append, as_ndjson(snapshot), kept, wait_s=wait_s, waiting=voice.say)
+    if report is not None:
+        write_snapshot_report(report, snapshot, append or folder)
+    if voice.json:
+        click.echo(as_json(snapshot), nl=False)
+    elif to_stdout:
+        click.echo(text, nl=False)
+    warn_of(snapshot.errors, voice, snapshot.not_asked)
+    return PlcError.exit_code if snapshot.errors else 0
+
+
+def _name(output: str | None, folder: Path | None, spec: Path | None) -> str:
+    """What tells a snapshot's figures from another's of the same PLC: the file, or the specification."""
+    if folder is not None:
+        return folder.name
+    if output is not None:
+        return Path(output).stem
+    return "" if spec is None else spec.stem
+
+
+def _form(form: str | None, voice: Voice, output: str | None, append: Path | None, *, to_stdout: bool) -> str:
+    """How the snapshot is written: as ``--format`` says, else as the name of FILE does, else as JSON.
+
+    Raises:
+        UsageError: a format that nothing would be written in.
+    """
+    suffix = "" if output is None else Path(output).suffix.lower().removeprefix(".")
+    of_name = next((name for name, ending in SUFFIXES.items() if ending == suffix), None)
+    if append is not None:
+        ending = append.suffix.lower().removeprefix(".")
+        if ending in SUFFIXES.values() and ending not in _SERIES:
+            raise UsageError(f"--append {append}: lines of NDJSON", hint="expected a name such as x.ndjson")
+        if form not in {None, "ndjson"} and output is None and not to_stdout:
+            raise UsageError(
+                f"--append writes NDJSON, which does not go with --format {form}",
+                hint=f"leave out --format, or add -o FILE for {form}",
+            )
+    if form not in {None, "json"} and voice.json and to_stdout:
+        raise UsageError(
+            f"--json does not go with --format {form} on standard output",
+            hint=f"leave one out, or add -o FILE for {form}",
+        )
+    return form or of_name or "json"
+
+
+def selected(elements: tuple[str, ...], spec: Path | None, groups: tuple[str, ...], *, whole: bool) -> Spec:
+    """The items that the options name; for ``--all`` none yet, as the PLC must be asked."""
+    if sum((bool(elements), spec is not None, whole)) != 1:
+        raise UsageError("expected one of: ELEMENTS, --spec FILE.toml, --all")
+    if groups and spec is None:
+        raise UsageError("--group goes with --spec")
+    if spec is not None:
+        return parse_spec(read_bounded(spec, MAX_SPEC), str(spec), groups)
+    return Spec(items_of(parse_items(elements)))
+
+
+def _require_places(
+    output: str | None, folder: Path | None, append: Path | None, kept: Keep | None, voice: Voice
+) -> None:
+    """Check, before the PLC is asked, that the snapshot can be put where it shall go."""
+    if folder is not None:
+        require_folder_for(folder, voice)
+    if append is not None:
+        require_lines(append, kept)
+    if output is not None and folder is None:
+        _require_output(Path(output))
+
+
+def _require_output(path: Path) -> None:
+    """Check that a snapshot can be put here, and that no program is lost by it.
+
+    Raises:
+        UsageError: it cannot, or a backup lies there.
+    """
+    require_free(path)
+    real = Path(os.path.realpath(path))
+    try:
+        with real.open("rb") as file:
+            start = file.read(_LOOKED_AT)
+    except OSError:  # it is not there, or cannot be read, but perhaps replaced
+        return
+    if _BACKUP in start:
+        raise UsageError(
+            f"{path} is the backup of a program, and is kept", hint="name another file", file=str(path)
+        )
+
+
+def _folder(output: str | None) -> Path | None:
+    if output is None or not (output.endswith(("/", "\\")) or Path(output).is_dir()):
+        return None
+    return Path(output)
+
+
+@snapshot_command.command(
+    "diff", epilog="Example: fatektool snapshot diff monday.json tuesday.json --ignore 'RT*'"
+)
+@click.argument("a", type=PATH)
+@click.argument("b", type=PATH)
+@click.option("--ignore", multiple=True, metavar="GLOB", help="Keys that do not count; repeat for more.")
+@click.option("--tolerance", type=click.FloatRange(0), default=0.0, help="How far apart two numbers may be.")
+@voice_options
+def diff_command(a: Path, b: Path, voice: Voice, *, ignore: tuple[str, ...], tolerance: float) -> int:
+    """Compare the snapshots A and B: exit 0 if nothing differs, 1 if something does. Needs no PLC."""
+    if isnan(tolerance):
+        raise UsageError("--tolerance nan: expected a number from 0")
+    one, other = load_snapshot(a, voice.warn), load_snapshot(b, voice.warn)
+    changes = compare_snapshots(one, other, ignore=ignore, tolerance=tolerance)
+    document = {
+        "schema": "fatektool.snapshot-diff/1",
+        "a": {"file": str(a), "time": one.time},
+        "b": {"file": str(b), "time": other.time},
+        "same": not changes,
+        "changes": [{"key": change.key, "a": change.a, "b": change.b} for change in changes],
+    }
+    voice.show(document, _change_lines(changes))
+    return 1 if changes else 0
+
+
+def _change_lines(changes: list[Change]) -> Iterator[str]:
+    if not changes:
+        yield "same"
+    width = max((len(change.key) for change in changes), default=0)
+    for change in changes:
+        one, other = (
+            "(not there)" if change.absent == side else shown(value, "no value")
+            for side, value in (("a", change.a), ("b", change.b))
+        )
+        yield f"{change.key:<{width}}  {one} -> {other}"
+
+
+snapshot_command.add_command(apply_command)

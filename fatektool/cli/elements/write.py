@@ -1,0 +1,102 @@
+"""``write``: elements of any kind."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from fatektool.cli.elements.read import shown, warn_of
+from fatektool.cli.shared.addressee import look
+from fatektool.cli.shared.broadcast import broadcast_option, means_all, send_to_all
+from fatektool.cli.shared.documents import where
+from fatektool.cli.shared.modbus_map import modbus_map_option
+from fatektool.cli.shared.options import Connection, connection_options, yes_option
+from fatektool.connection import codec_named
+from fatektool.errors import DataError, LineError, PlcBusy, PlcError
+from fatektool.jobs.elements.assignment import parse_assignments
+from fatektool.jobs.elements.writes import write_elements
+from fatektool.planner import plan_writes
+from fatektool.protocol.values import Value, decode
+
+if TYPE_CHECKING:
+    from fatektool.cli.shared.output import Voice
+    from fatektool.jobs.elements.selection import Item
+    from fatektool.jobs.elements.writes import NotTaken
+
+
+@click.command(
+    "write", epilog="Example: fatektool write R12=4261 WM8=0x5555 DR2=-1 D4:f32=1.5 Y0=on -p /dev/ttyUSB0"
+)
+@click.argument("assignments", nargs=-1, required=True, metavar="ELEMENT=VALUE…")
+@broadcast_option
+@yes_option
+@connection_options
+@modbus_map_option
+def write_command(
+    assignments: tuple[str, ...], connection: Connection, voice: Voice, *, broadcast: bool, yes: bool
+) -> int:
+    """Write elements of any kind, in the fewest bytes, and read them back.
+
+    What did not take is said (exit 4): a disabled discrete, a read-only register, one that the program writes
+    too. A range takes one value for all of it, or one each: R0:3=1,2,3.
+
+    Nothing is asked, but before a broadcast.
+    """
+    pairs = parse_assignments(assignments)
+    if means_all(connection, broadcast=broadcast):
+        requests = plan_writes([(item.element, raw) for item, raw in pairs], codec_named(connection.protocol))
+        send_to_all(connection, voice, "write", requests, yes=yes)
+        return 0
+    by_element = {item.element: item for item, _ in pairs}
+    with connection.open(voice, writes=True) as plc:
+        try:
+            failed = write_elements(plc, [(item.element, raw) for item, raw in pairs])
+        except (LineError, PlcBusy) as error:
+            if plc.link.counters.writes:
+                left = _left(len(pairs))
+                error.hint = f"{error.hint}; {left}" if error.hint else left
+            raise
+        not_taken = [
+            {
+                "element": by_element[each.element].key,
+                "wanted": _value(by_element[each.element], each.wanted),
+                "got": _value(by_element[each.element], each.got),
+                "reason": each.reason,
+            }
+            for each in failed
+        ]
+        here = look(plc)
+        document = {
+            "schema": "fatektool.write/1",
+            **where(plc),
+            **here.document(),
+            "written": len(pairs) - len(failed),
+            "not_taken": not_taken,
+        }
+    taken = len(pairs) - len(failed)
+    lines = [f"{taken} of {len(pairs)} elements written and read back", here.line]
+    voice.show(document, lines)
+    told = {by_element[each.element].key: _told(by_element[each.element], each) for each in failed}
+    warn_of(told, voice)
+    return PlcError.exit_code if failed else 0
+
+
+def _left(count: int) -> str:
+    """What is to be known of the values when the line failed after the first was sent."""
+    if count == 1:
+        return "the value may be written: read it, or write it again"
+    return f"some of the {count} values may be written: read them, or write them again"
+
+
+def _told(item: Item, each: NotTaken) -> str:
+    return each.words(lambda raw: shown(_value(item, raw), None))
+
+
+def _value(item: Item, raw: int | None) -> Value | None:
+    if raw is None:
+        return None
+    try:
+        return decode(raw, item.type, item.element.kind.bits)
+    except DataError:
+        return f"{raw:X}"

@@ -1,0 +1,1 @@
+"""Commands for the line: doctor, loopback, scan, ports, link, decode, encode, modbus."""

@@ -1,0 +1,64 @@
+"""``doctor``: a short examination of a PLC and its line."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fatektool.cli.line.documents import doctor_document
+from fatektool.cli.line.loopback_view import findings
+from fatektool.cli.shared.options import Connection, connection_options
+from fatektool.jobs.linetest.doctor import examine
+from fatektool.protocol.commands import Command
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from fatektool.cli.shared.output import Voice
+
+
+@click.command("doctor", epilog="Example: fatektool doctor -p /dev/ttyUSB0")
+@connection_options
+def doctor_command(connection: Connection, voice: Voice) -> int:
+    """Examine a PLC and its line: what is wrong, what says so, and what to do.
+
+    Takes ten seconds or so; writes nothing. Where a serial line is silent, all speeds that these PLCs have
+    are tried in the usual formats, which takes a minute at most. Exit 1 if there is a fault.
+    """
+    with connection.open(voice, needs=(Command.LOOPBACK,)) as plc, voice.progress("steps") as bar:
+        found = examine(plc, bar.update)
+        document = doctor_document(plc, found)
+    voice.show(document, _lines(document))
+    return 0 if found.healthy else 1
+
+
+def _lines(document: dict[str, Any]) -> Iterator[str]:
+    test = document["loopback"]
+    line = f" ({document['line']})" if document["line"] else ""
+    yield f"station {document['station']} on {document['target']}{line}, {document['protocol']}"
+    times = test["latency_ms"]
+    took = "" if times["p50"] is None else f", half of them within {times['p50']:.1f} ms"
+    yield f"loopback test: {test['ok']} of {test['sent']} came back{took}"
+    if document["status"] is not None:
+        yield f"the PLC is in {'RUN' if document['status']['running'] else 'STOP'}"
+    if document["searched"] is not None:
+        yield from _searched(document["searched"], found=bool(document["elsewhere"]))
+    yield ""
+    yield from findings(document["findings"])
+    if document["healthy"]:
+        yield "nothing is wrong"
+
+
+def _searched(searched: dict[str, Any], *, found: bool) -> Iterator[str]:
+    """What was tried elsewhere; with who was found the search ended."""
+    formats: dict[str, list[int]] = {}
+    for line in searched["tried"]:
+        baud, form = line.split()
+        formats.setdefault(form, []).append(int(baud))
+    for form, bauds in formats.items():
+        yield f"tried {form}  {', '.join(map(str, sorted(bauds)))} baud"
+    if searched["refused"]:
+        yield f"this port does not take {', '.join(searched['refused'])}"
+    ended = "the time was over" if searched["out_of_time"] else "found" if found else "nobody answered"
+    yield f"searched {searched['duration_s']:.0f} s: {ended}"

@@ -1,0 +1,1 @@
+"""The ``link`` command: the PLC's own communication ports and tables."""

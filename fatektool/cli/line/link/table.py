@@ -1,0 +1,113 @@
+"""``link table``: communication tables shown, checked and saved. ``link table write`` has its own file."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fatektool.cli.line.link.result import KINDS
+from fatektool.cli.line.link.table_view import table_document, table_lines
+from fatektool.cli.line.link.table_write import write_command
+from fatektool.cli.shared.documents import where
+from fatektool.cli.shared.options import PATH, Connection, connection_options, voice_options
+from fatektool.files.atomic import read_bounded, require_place, write_whole
+from fatektool.jobs.plcports.host import LinkHost, read_host
+from fatektool.jobs.plcports.tables import parse_start, read_table
+from fatektool.jobs.plcports.toml import MAX_TOML, load_table
+from fatektool.jobs.plcports.toml_text import dump_table
+from fatektool.plcports.kinds import TableKind
+from fatektool.plcports.tables import place_faults
+from fatektool.plcports.versions import needs_of_table
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+    from typing import TypeVar
+
+    from fatektool.cli.shared.output import Voice
+
+    F = TypeVar("F", bound=Callable[..., Any])
+
+
+def kind_option(function: F) -> F:
+    """``--kind``, which the words of a table do not tell."""
+    return click.option(
+        "--kind",
+        type=click.Choice(KINDS, case_sensitive=False),
+        required=True,
+        help="CLINK's mode (FUN151), or mbus (FUN150).",
+    )(function)
+
+
+@click.group("table", epilog="Example: fatektool link table show R5000 --kind md0 -p /dev/ttyUSB0")
+def table_command() -> None:
+    """Communication tables: what the instructions CLINK and M-BUS ask of whom.
+
+    SR is the instruction's operand: the register where its table begins, such as R5000 or D100.
+    """
+
+
+@table_command.command(
+    "show", epilog="Example: fatektool link table show R5000 --kind mbus -p /dev/ttyUSB0 --check"
+)
+@click.argument("sr", metavar="SR")
+@kind_option
+@click.option("--check", is_flag=True, help="Exit 1 if something in the table is wrong.")
+@connection_options
+def show_command(sr: str, connection: Connection, voice: Voice, *, kind: str, check: bool) -> int:
+    """Show the table at SR, each row with the result that it would give."""
+    start = parse_start(sr, "SR")
+    with connection.open(voice) as plc:
+        found = read_table(plc, start, TableKind(kind))
+        faults = [*place_faults(start, len(found.to_words())), *found.faults()]
+        host = read_host(plc, needs_of_table(found))
+        document = table_document(found, faults, str(start), None, where(plc), host=host)
+    voice.show(document, table_lines(found, faults))
+    for warning in host.warnings():
+        voice.warn(warning)
+    return int(check and bool(faults))
+
+
+@table_command.command("check", epilog="Example: fatektool link table check press.toml")
+@click.argument("file", type=PATH)
+@voice_options
+def check_command(file: Path, voice: Voice) -> int:
+    """Check the table in FILE: exit 0 if it holds, 1 if something in it is wrong. Needs no PLC."""
+    found = load_table(read_bounded(file, MAX_TOML), str(file))
+    faults = found.faults()
+    host = LinkHost(None, needs_of_table(found))
+    voice.show(table_document(found, faults, None, str(file), None, host=host), table_lines(found, faults))
+    for need in host.needs:
+        voice.say(f"{need.what} needs OS {need.version} or later of the PLC")
+    return 1 if faults else 0
+
+
+@table_command.command(
+    "save", epilog="Example: fatektool link table save R5000 press.toml --kind md0 -p /dev/ttyUSB0"
+)
+@click.argument("sr", metavar="SR")
+@click.argument("file", type=PATH)
+@kind_option
+@click.option("--force", is_flag=True, help="Replace FILE.")
+@connection_options
+def save_command(sr: str, file: Path, connection: Connection, voice: Voice, *, kind: str, force: bool) -> int:
+    """Save the table at SR into FILE, as TOML. What is wrong with it is kept, and said."""
+    start = parse_start(sr, "SR")
+    require_place(file, overwrite=force)
+    with connection.open(voice) as plc:
+        found = read_table(plc, start, TableKind(kind))
+        faults = [*place_faults(start, len(found.to_words())), *found.faults()]
+        host = read_host(plc, needs_of_table(found))
+        document = table_document(found, faults, str(start), str(file), where(plc), host=host)
+    write_whole(file, dump_table(found).encode(), overwrite=force)
+    count = len(found.to_words())
+    voice.show(document, [f"saved {file}: {kind}, {count} registers from {start}"])
+    for warning in host.warnings():
+        voice.warn(warning)
+    if faults:
+        voice.warn(f"the table has {len(faults)} faults: 'fatektool link table check {file}' shows them")
+    return 0
+
+
+table_command.add_command(write_command)

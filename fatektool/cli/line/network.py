@@ -1,0 +1,104 @@
+"""``scan --network``: which Ethernet modules answer by UDP."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fatektool.cli.shared.pairs import apart, given
+from fatektool.errors import UsageError
+from fatektool.files.times import utc
+from fatektool.transport import discovery
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from fatektool.cli.shared.output import Voice
+    from fatektool.transport.discovery import Answer
+
+LISTENED_S = 2.0
+_MOST_PORT = 65535
+_IN_A_LINE = 16
+
+
+def look_for_modules(voice: Voice, network: str, timeout_s: float) -> int:
+    """Ask at the address that is named, and at no other; show who answers.
+
+    Args:
+        voice: tells it.
+        network: HOST[:PORT].
+        timeout_s: of ``--timeout``.
+
+    Raises:
+        UsageError: no such address, or an option that has no effect here.
+        LineError: nothing can be sent.
+    """
+    apart(
+        "network",
+        *("port", "stations", "bauds", "formats", "protocols", "station", "baud", "line_format", "protocol"),
+        *("retries", "lock_wait", "low_latency", "trace", "inventory"),
+        why="modules are looked for with one call on UDP; --timeout says how long to listen",
+    )
+    host, port = _host_and_port(network)
+    listen_s = timeout_s if given("timeout") else LISTENED_S
+    head = {"time": utc(), "target": f"{host}:{port}"}
+    shown = (lambda _: None) if voice.json else lambda answer: _show(voice, answer)
+    found = discovery.discover(
+        host, port, listen_s=listen_s, answer_port=discovery.ANSWER_PORT, on_answer=shown
+    )
+    if voice.json:
+        voice.show(_document(head, listen_s, found), ())
+    count = len({answer.address for answer in found})
+    told = f"{count or 'no'} module{'' if count == 1 else 's'} answered at {host}, UDP port {port}"
+    advice = "; on another network, or a firewall in between?" if not count else ""
+    voice.say(f"{told}, within {listen_s:g} s{advice}")
+    return 0 if found else 1
+
+
+def _host_and_port(text: str) -> tuple[str, int]:
+    host, colon, port = text.rpartition(":")
+    if not colon or "]" in port or (":" in host and not host.startswith("[")):  # a bare IPv6 address
+        host, port = text, str(discovery.MODULE_PORT)
+    if not host or not (port.isascii() and port.isdigit() and 0 < int(port) <= _MOST_PORT):
+        raise UsageError(f"--network: expected HOST or HOST:PORT, got {text!r:.80}")
+    return host.strip("[]"), int(port)
+
+
+def _show(voice: Voice, answer: Answer) -> None:
+    voice.show({}, _lines(answer))
+
+
+def _lines(answer: Answer) -> Iterator[str]:
+    short = "" if len(answer.data) >= discovery.SHORTEST_ANSWER else ", shorter than that of a module"
+    yield f"{answer.address}  {len(answer.data)} bytes{short}; what they mean is not known:"
+    for at in range(0, len(answer.data), _IN_A_LINE):
+        part = answer.data[at : at + _IN_A_LINE]
+        text = "".join(chr(byte) if 0x20 <= byte < 0x7F else "." for byte in part)
+        yield f"  {at:04X}  {part.hex(' ').upper():<47}  {text}"
+
+
+def _document(head: dict[str, Any], listen_s: float, found: list[Answer]) -> dict[str, Any]:
+    return {
+        "schema": "fatektool.network/1",
+        **head,
+        "requests": [request.hex(" ").upper() for request in discovery.REQUESTS],
+        "listened_s": listen_s,
+        "answers": [
+            {
+                "address": answer.address,
+                "port": answer.port,
+                "bytes": len(answer.data),
+                "hex": answer.data.hex(" ").upper(),
+            }
+            for answer in found
+        ],
+    }
+
+
+network_option = click.option(
+    "--network",
+    metavar="HOST[:PORT]",
+    help="Instead: which Ethernet modules answer on UDP at this address, one of a network too "
+    "(192.168.2.255). Sent there alone.",
+)

@@ -1,0 +1,230 @@
+"""``scan``: who is on the line."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fatektool.cli import INTERRUPTED
+from fatektool.cli.line.documents import scan_document, station_document
+from fatektool.cli.line.network import look_for_modules, network_option
+from fatektool.cli.shared.options import PROTOCOLS, Connection, Several, connection_options
+from fatektool.cli.shared.pairs import apart, together
+from fatektool.errors import UsageError
+from fatektool.exchange.no_answer import longer_timeout
+from fatektool.files.times import utc
+from fatektool.jobs.linetest.scan import scan
+from fatektool.jobs.linetest.scan_result import ScanResult, Setting
+from fatektool.protocol.line_settings import BAUDS, FORMATS
+from fatektool.transport.base import LineSettings
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from fatektool.cli.shared.output import Voice
+    from fatektool.jobs.linetest.scan_result import Station
+
+
+_OF_UNITS = "modbus-tcp"
+_UNITS = {0, 255}
+
+
+class Stations(click.ParamType):  # type: ignore[type-arg]  # a generic in the newest click only
+    """``1-254``, ``1,5,7-9``."""
+
+    name = "stations"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Read them, each once, in the order given."""
+        found: dict[int, None] = {}
+        for part in str(value).split(","):
+            first, dash, last = part.strip().partition("-")
+            ends = [first, last if dash else first]
+            if not all(end.isascii() and end.isdigit() and 0 <= int(end[:4]) <= 255 for end in ends):
+                self.fail(
+                    f"{part.strip()!r}: expected stations from 1 to 254, such as 1-254 or 1,5,7-9; "
+                    f"over {_OF_UNITS} 0 and 255 too",
+                    param,
+                    ctx,
+                )
+            if int(ends[0]) > int(ends[1]):
+                self.fail(f"{part.strip()!r}: expected the lower station first", param, ctx)
+            found.update(dict.fromkeys(range(int(ends[0]), int(ends[1]) + 1)))
+        return tuple(found)
+
+
+class Bauds(Several):
+    """Numbers with commas between them, or ``all``."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Read them."""
+        return BAUDS if value == "all" else super().convert(value, param, ctx)
+
+
+@click.command(
+    "scan",
+    epilog="Example: fatektool scan --bauds 9600,19200,38400 --formats 7E1,8N1 -p /dev/ttyUSB0",
+)
+@click.option(
+    "--stations",
+    type=Stations(),
+    default="1-254",
+    show_default=True,
+    help="Which; the first is tried everywhere first.",
+)
+@click.option(
+    "--bauds",
+    type=Bauds(click.INT),
+    metavar="N,…",
+    help="Speeds to try; 'all' for those that FATEK has.  [default: that of --baud]",
+)
+@click.option(
+    "--formats",
+    type=Several(click.STRING),
+    metavar="F,…",
+    help="Formats to try.  [default: that of --format]",
+)
+@click.option(
+    "--protocols",
+    type=Several(click.Choice(PROTOCOLS)),
+    metavar="P,…",
+    help="Protocols to try.  [default: that of --protocol]",
+)
+@network_option
+@connection_options
+def scan_command(
+    connection: Connection,
+    voice: Voice,
+    *,
+    stations: tuple[int, ...],
+    bauds: tuple[int, ...] | None,
+    formats: tuple[str, ...] | None,
+    protocols: tuple[str, ...] | None,
+    network: str | None,
+) -> int:
+    """Find which stations answer, and at which speed, format and protocol.
+
+    Each is asked for its brief status (40), over Modbus for R0, which changes nothing.
+
+    A silent station costs the wire time and
+    --timeout: a shorter one makes a scan faster, and deaf to slow PLCs. Exit 1 if nobody answers.
+    """
+    apart("network", "port", "stations", "station", why="Ethernet modules are asked, and no line")
+    apart("network", "bauds", "baud", "formats", "line_format", "protocols", "protocol")
+    apart("network", "trace", "retries", "lock_wait")
+    if network is not None:
+        return look_for_modules(voice, network, connection.timeout_s)
+    together("station", holds=False, needs="one PLC; a scan asks those of --stations")
+    apart("baud", "bauds")
+    apart("line_format", "formats")
+    apart("protocol", "protocols")
+    settings = _settings(connection, bauds, formats, protocols)
+    for station in _UNITS.intersection(stations):
+        if not any(station in setting.codec.stations for setting in settings):
+            raise UsageError(
+                f"station {station}: expected stations from 1 to 254; it is a unit of {_OF_UNITS}"
+            )
+    with ExitStack() as stack:
+        transport = connection.open_line(voice, stack)
+        serial = transport.line is not None
+        networks = [setting.codec.name for setting in settings if setting.codec.data_bits is None]
+        if serial and networks:
+            raise UsageError(f"{networks[0]} is for networks: {connection.target} is a serial line")
+        if not serial and len({setting.line.baud for setting in settings}) > 1:
+            raise UsageError(
+                f"{connection.target} has no speed and format to try: expected a serial port",
+                hint="set them at the gateway",
+            )
+        head = {"time": utc(), "target": connection.target}
+        bar = stack.enter_context(voice.progress("probes"))
+        result = scan(
+            transport,
+            settings,
+            stations,
+            timeout_s=connection.timeout_s,
+            retries=connection.retries,
+            on_found=lambda found: None if voice.json else bar.print(_line(found, serial=serial)),
+            on_probe=lambda done, total: bar.update("scan", done, total),
+        )
+    if voice.json:
+        voice.show(scan_document(head, result, serial=serial), ())
+    voice.say(_summary(result))
+    if result.interrupted:
+        return INTERRUPTED
+    return 0 if result.found else 1
+
+
+def _settings(
+    connection: Connection,
+    bauds: tuple[int, ...] | None,
+    formats: tuple[str, ...] | None,
+    protocols: tuple[str, ...] | None,
+) -> list[Setting]:
+    """All that can be: protocol by protocol, the factory setting first.
+
+    Raises:
+        UsageError: a protocol for which no format has bits enough.
+    """
+    from fatektool.connection import codec_named, usual_format
+
+    found: dict[Setting, None] = {}
+    for name in protocols or (connection.protocol,):
+        codec = codec_named(name)
+        own = connection.format if name == connection.protocol else usual_format(name)
+        lines = [
+            LineSettings(baud, form.upper())
+            for baud in bauds or (connection.baud,)
+            for form in formats or (own,)
+        ]
+        carrying = [line for line in lines if line.data_bits >= (codec.data_bits or 0)]
+        if not carrying:
+            tried = ", ".join(formats or (own,))
+            raise UsageError(
+                f"{name} needs {codec.data_bits} data bits, which no format of {tried} has",
+                hint=f"add {usual_format(name)} to --formats",
+            )
+        factory = LineSettings(format=usual_format(name))
+        found |= {Setting(codec, line): None for line in sorted(carrying, key=lambda line: line != factory)}
+    return list(found)
+
+
+def _line(found: Station, *, serial: bool) -> str:
+    row = station_document(found, serial=serial)
+    line = f"{row['baud']} {row['format']}  " if serial else ""
+    mode = {True: "RUN", False: "STOP", None: "mode unknown"}[row["running"]]
+    took = "late" if row["latency_ms"] is None else f"{row['latency_ms']:.1f} ms{', late' * row['late']}"
+    model = row["model"] or "model unknown"
+    return f"station {row['station']:>3}  {line}{row['protocol']}  {mode}  {model}  {took}"
+
+
+def _summary(result: ScanResult) -> str:
+    return "; ".join(_parts(result))
+
+
+def _parts(result: ScanResult) -> Iterator[str]:
+    count = len(result.found)
+    stations = f"{count or 'no'} station{'' if count == 1 else 's'}"
+    yield f"{stations} found by {result.probes} probes in {result.duration_s:.1f} s"
+    if result.unclear:
+        places = sorted({place.station for place in result.unclear})
+        named = ", ".join(map(str, places[:5])) + (", …" if len(places) > 5 else "")
+        yield f"something that is no frame was heard from station {named}: another speed, format or protocol?"
+    elif not count:
+        yield f"is the PLC on, the cable in? try --bauds all --formats {','.join(FORMATS)}"
+    if result.refused:
+        lines = dict.fromkeys(str(setting.line) for setting in result.refused)
+        yield f"this port does not take {', '.join(lines)}"
+    for found in result.found:
+        if found.any_number:
+            yield (
+                f"what answers as station {found.station} answers every number: it is one PLC, whose port "
+                "does not check the station (low byte of R4149 for port 0, R4155 for ports 1 and 2, R4156 "
+                "for 3 and 4 is 1; for a line of several PLCs write 0 there)"
+            )
+    late_s = [found.latency_s for found in result.found if found.late and found.latency_s is not None]
+    if late_s:
+        yield f"answers came late, after {max(late_s):.2g} s: give --timeout {longer_timeout(max(late_s)):g}"
+    if result.interrupted:
+        yield "interrupted"

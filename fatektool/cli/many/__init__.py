@@ -1,0 +1,1 @@
+"""Commands for many PLCs: fleet, inventory, history, check."""

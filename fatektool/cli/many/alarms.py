@@ -1,0 +1,218 @@
+"""``--prometheus``, ``--on-change``, ``--on-failure``: who is told what became of the PLCs."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from dataclasses import dataclass, field
+from functools import wraps
+from typing import TYPE_CHECKING, Any, Final, TypeVar
+
+import click
+
+from fatektool.cli.shared.options import PATH
+from fatektool.errors import FatektoolError, UsageError
+from fatektool.files.atomic import read_bounded, require_place, write_whole
+from fatektool.files.times import utc
+from fatektool.jobs.fleet.alarms import TIME_LIMIT_S, Event, parse_command, run_command
+from fatektool.jobs.prometheus import Sample, doubled, exposition, sample, successes
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from fatektool.cli.many.fleet.jobs import Done
+    from fatektool.cli.shared.output import Voice
+
+F = TypeVar("F", bound="Callable[..., Any]")
+
+_MAX_FILE: Final = 64 << 20
+_MODE: Final = 0o644  # the collector is another user
+_MOST_HANGS: Final = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """What became of one PLC, for those who are told.
+
+    Attributes:
+        name: the PLC's.
+        target: where it is.
+        station: 1 to 254.
+        exit_code: of its job.
+        words: the same on one line.
+        duration_s: how long it took.
+        up: whether it answered; None if it was not asked.
+        done: what its job gave; None if it failed.
+    """
+
+    name: str
+    target: str
+    station: int
+    exit_code: int
+    words: str
+    duration_s: float
+    up: bool | None
+    done: Done | None
+
+
+@dataclass(slots=True)
+class Alarms:
+    """Who is told, and of what.
+
+    Attributes:
+        prometheus: the file for the textfile collector.
+        on_change: the command for another program.
+        on_failure: the command for what did not end well.
+        lost: why the file could not be written; None if it was.
+    """
+
+    prometheus: Path | None
+    on_change: tuple[str, ...] | None
+    on_failure: tuple[str, ...] | None
+    lost: FatektoolError | None = field(init=False, default=None)
+    _told: list[tuple[str, Told]] = field(init=False, default_factory=list)
+    _hangs: int = field(init=False, default=0)
+
+    def tell(self, job: str, told: Told, voice: Voice) -> None:
+        """One PLC has ended: start the commands that it calls for."""
+        if self.prometheus is not None:
+            self._told.append((job, told))
+        if self.on_change is not None and told.done is not None and told.done.changed:
+            self._run(self.on_change, "change", job, told, voice)
+        if self.on_failure is not None and told.exit_code:
+            self._run(self.on_failure, "failure", job, told, voice)
+
+    def write(self, known: set[str], voice: Voice) -> None:
+        """Write the Prometheus file, whole or not at all; ``lost`` is why, if it cannot be.
+
+        That is no error here: what became of the PLCs is still to be told.
+
+        Args:
+            known: the PLCs whose successes of former runs are kept.
+            voice: is told of other files that the collector would not take beside this one.
+        """
+        if self.prometheus is not None:
+            try:
+                self._write(self.prometheus, known, voice)
+            except FatektoolError as error:
+                self.lost = error
+
+    def _write(self, prometheus: Path, known: set[str], voice: Voice) -> None:
+        former: dict[tuple[str, str], float] = {}
+        if prometheus.is_file():
+            text = read_bounded(prometheus, _MAX_FILE).decode(errors="replace")
+            former = {key: when for key, when in successes(text).items() if key[0] in known}
+        text = exposition(_samples(self._told, former, time.time()))
+        write_whole(prometheus, text.encode(errors="backslashreplace"), overwrite=True, mode=_MODE)
+        for name, series in doubled(text, _beside(prometheus)).items():
+            voice.warn(
+                f"{prometheus.name} and {name} both have {series}: the node exporter takes neither; "
+                f"remove {name} if nothing writes it any more, or let one command write both"
+            )
+
+    def _run(self, command: tuple[str, ...], event: str, job: str, told: Told, voice: Voice) -> None:
+        if self._hangs >= _MOST_HANGS:
+            voice.warn(f"{told.name}: {command[0]} is not started, as it hung {_MOST_HANGS} times before")
+            return
+        file = "" if told.done is None or told.done.file is None else str(told.done.file)
+        happened = Event(
+            told.name, told.target, told.station, job, event, told.exit_code, told.words, file, utc()
+        )
+        began = time.monotonic()
+        fault = run_command(command, happened)
+        if fault is not None:
+            voice.warn(f"--on-{event} for {told.name}: {fault}")
+        self._hangs += time.monotonic() - began >= TIME_LIMIT_S
+
+
+def _beside(prometheus: Path) -> dict[str, str]:
+    """The other files of the collector's folder, as far as they can be read."""
+    found = {}
+    with contextlib.suppress(OSError):
+        for path in sorted(prometheus.absolute().parent.glob("*.prom")):
+            with contextlib.suppress(FatektoolError):
+                if path.name != prometheus.name:
+                    found[path.name] = read_bounded(path, _MAX_FILE).decode(errors="replace")
+    return found
+
+
+def _samples(
+    told: list[tuple[str, Told]], former: dict[tuple[str, str], float], now: float
+) -> Iterator[Sample]:
+    for job, each in told:
+        of_job = {"plc": each.name, "job": job}
+        place = of_job | {"target": each.target, "station": each.station}
+        yield sample("fatek_plc_info", 1, place)
+        if each.up is not None:
+            yield sample("fatek_up", each.up, of_job)
+        yield sample("fatek_exit_code", each.exit_code, of_job)
+        yield sample("fatek_last_run_timestamp_seconds", int(now), of_job)
+        yield sample("fatek_duration_seconds", round(each.duration_s, 3), of_job)
+        if each.exit_code == 0:
+            former[each.name, job] = int(now)
+        done = each.done
+        if done is not None and done.changed is not None:
+            yield sample("fatek_program_changed", done.changed, of_job)
+        if done is not None and done.flags is not None:
+            for flag in (
+                "running",
+                "battery_low",
+                "ladder_checksum_error",
+                "watchdog_timeout",
+                "emergency_stop",
+            ):
+                yield sample(f"fatek_{flag}", getattr(done.flags, flag), of_job)
+    for (name, job), when in sorted(former.items()):
+        yield sample("fatek_last_success_timestamp_seconds", when, {"plc": name, "job": job})
+
+
+def alarm_options(*, changes: bool, place_first: bool = True) -> Callable[[F], F]:
+    """The options; the command gets ``alarms``.
+
+    Args:
+        changes: False for a job that compares nothing, and has no ``--on-change``.
+        place_first: False for a monitoring plugin, which asks the PLC whether its file can be written or not.
+    """
+
+    def decorated(function: F) -> F:
+        @click.option(
+            "--prometheus",
+            type=PATH,
+            metavar="FILE.prom",
+            help="Also write the state of all for the textfile collector of the node exporter.",
+        )
+        @click.option(
+            "--on-failure",
+            metavar="CMD",
+            help="Start CMD for each PLC that is not well; FATEK_NAME, FATEK_MESSAGE and more tell it what.",
+        )
+        @wraps(function)
+        def with_alarms(
+            *args: Any,
+            prometheus: Path | None,
+            on_failure: str | None,
+            on_change: str | None = None,
+            **rest: Any,
+        ) -> Any:
+            alarms = Alarms(
+                prometheus,
+                None if on_change is None else parse_command(on_change, "--on-change"),
+                None if on_failure is None else parse_command(on_failure, "--on-failure"),
+            )
+            if prometheus is not None:
+                if prometheus.suffix != ".prom":
+                    raise UsageError(f"--prometheus {prometheus}: expected a name that ends in .prom")
+                if place_first:
+                    require_place(prometheus, overwrite=True)
+            return function(*args, alarms=alarms, **rest)
+
+        if changes:
+            with_alarms = click.option(
+                "--on-change",
+                metavar="CMD",
+                help="Start CMD for each PLC whose program is another than before.",
+            )(with_alarms)
+        return with_alarms  # type: ignore[return-value]  # click's decorators hand back what they get
+
+    return decorated

@@ -1,0 +1,105 @@
+"""A line for each PLC as it ends; on a terminal below them a table of those at work.
+
+With ``-q`` there are lines only for what is not well or changed: cron mails nothing else.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from typing import TYPE_CHECKING, Any, Final
+
+import click
+
+from fatektool.cli.shared.output import shows_progress
+
+if TYPE_CHECKING:
+    from types import TracebackType
+    from typing import Self
+
+    from rich.text import Text
+
+    from fatektool.cli.many.alarms import Told
+    from fatektool.cli.shared.output import Voice
+    from fatektool.jobs.fleet.rounds import Fleet, Turn
+
+_LONGEST_NAME: Final = 24
+_REFRESH_S: Final = 0.2
+_WORDS: Final = {0: "ok", 1: "differs"}
+
+
+class View:
+    """What is seen of a fleet at work, for a ``with`` statement.
+
+    Args:
+        job: what is done.
+        names: of all PLCs.
+        voice: how the command talks.
+        lines: False for no line a PLC.
+        news: no line for a PLC that is well and unchanged.
+    """
+
+    def __init__(self, job: str, names: list[str], voice: Voice, *, lines: bool, news: bool) -> None:
+        self._job = job
+        self._width = min(_LONGEST_NAME, max(map(len, names), default=0))
+        self._total = len(names)
+        self._ended = self._not_well = 0
+        self._lines = lines and not voice.json
+        self._news = news
+        self._refreshed = 0.0
+        self.live = shows_progress(voice)
+
+    def __enter__(self) -> Self:
+        if self.live:
+            from rich.console import Console
+            from rich.live import Live
+
+            self._rich = Live(
+                console=Console(stderr=True), auto_refresh=False, transient=True, redirect_stdout=False
+            )
+            self._rich.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self.live:
+            self._rich.stop()
+
+    def line(self, told: Told) -> None:
+        """One PLC has ended."""
+        self._ended += 1
+        self._not_well += told.exit_code != 0
+        nothing_new = told.exit_code == 0 and not (told.done is not None and told.done.changed)
+        if not self._lines or (self._news and nothing_new):
+            return
+        state = _WORDS.get(told.exit_code, f"FAILED {told.exit_code}")
+        text = f"{told.name:<{self._width}}  {state:<8}  {' '.join(told.words.split())}"
+        if self.live and sys.stdout.isatty():
+            self._rich.console.print(text, markup=False, highlight=False, soft_wrap=True)
+        else:
+            click.echo(text)
+            sys.stdout.flush()
+
+    def refresh(self, fleet: Fleet[Any]) -> None:
+        """Show those at work, a few times a second."""
+        now = time.monotonic()
+        if not self.live or now - self._refreshed < _REFRESH_S:
+            return
+        self._refreshed = now
+        self._rich.update(self._table(fleet.running(), self._rich.console.height, now), refresh=True)
+
+    def _table(self, running: list[Turn[Any]], height: int, now: float) -> Text:
+        from rich.text import Text
+
+        room = max(1, height - 3)
+        rows = [self._row(turn, now) for turn in running[:room]]
+        if len(running) > room:
+            rows.append(f"… {len(running) - room} more")
+        not_well = f", {self._not_well} not well" if self._not_well else ""
+        rows.append(f"{self._job}: {self._ended} of {self._total} ended{not_well}")
+        return Text("\n".join(rows), no_wrap=True, overflow="ellipsis")
+
+    def _row(self, turn: Turn[Any], now: float) -> str:
+        pages = f"  {turn.done}/{turn.total}" if turn.total else ""
+        return f"{turn.task.name:<{self._width}}  {turn.phase}{pages}  {now - turn.began:.0f} s"

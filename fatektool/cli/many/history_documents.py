@@ -1,0 +1,149 @@
+"""What the ``history`` commands print, as documents and as lines."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from fatektool.cli.shared.documents import backup_summary, networks_document
+from fatektool.files.times import utc
+from fatektool.history.messages import count
+from fatektool.history.revisions import SHORT
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
+
+    from fatektool.history.checking import Checked, Fault
+    from fatektool.history.history import Change, Recorded, Stored
+    from fatektool.history.push import Pushed
+    from fatektool.ladder.differences import NetworkChange
+    from fatektool.program.archive import Backup
+
+
+def record_document(found: Recorded, backup: Backup, folder: Path, pushed: Pushed | None) -> dict[str, Any]:
+    """``fatektool.history-record/1``."""
+    changes = found.changes
+    return {
+        "schema": "fatektool.history-record/1",
+        "history": str(folder),
+        "name": found.name,
+        "changed": found.revision is not None,
+        "revision": found.revision,
+        "subject": found.subject,
+        "pages_differ": None if changes is None else len(changes.pages),
+        "words_differ": None if changes is None else changes.word_count,
+        "sha256": backup.program.sha256,
+        "warnings": list(found.warnings),
+        "push": None
+        if pushed is None
+        else {"remote": pushed.remote, "revision": pushed.revision, "sent": pushed.sent},
+    }
+
+
+def record_rows(found: Recorded, folder: Path, pushed: Pushed | None) -> Iterator[tuple[str, object]]:
+    """What became of a backup."""
+    if found.revision is None:
+        yield "unchanged", f"{found.name}: {folder} holds this program already"
+    else:
+        yield "recorded", found.subject
+        yield "revision", found.revision
+    if pushed is not None:
+        yield "pushed", pushed.remote if pushed.sent else f"{pushed.remote} has it all already"
+
+
+def log_document(found: Sequence[Change], folder: Path, name: str | None, *, more: bool) -> dict[str, Any]:
+    """``fatektool.history-log/1``."""
+    return {
+        "schema": "fatektool.history-log/1",
+        "history": str(folder),
+        "name": name,
+        "changes": [
+            {
+                "revision": change.commit.revision,
+                "time": utc(change.commit.time),
+                "name": change.name,
+                "subject": change.commit.subject,
+                "author": change.commit.author,
+                "removed": change.removed,
+            }
+            for change in found
+        ],
+        "more": more,
+    }
+
+
+def log_line(change: Change) -> str:
+    """One change; a commit that somebody else made is told with the PLC's name."""
+    subject = change.commit.subject
+    named = subject if subject.startswith(f"{change.name}: ") else f"{change.name}: {subject}"
+    removed = " (taken out)" if change.removed else ""
+    return f"{change.commit.revision[:SHORT]}  {utc(change.commit.time)}  {named}{removed}"
+
+
+def show_document(
+    found: Stored, folder: Path, changes: Sequence[NetworkChange] | None = None
+) -> dict[str, Any]:
+    """``fatektool.history-show/1``."""
+    return {
+        "schema": "fatektool.history-show/1",
+        **_where(found, folder),
+        "author": found.commit.author,
+        "subject": found.commit.subject,
+        **backup_summary(found.backup),
+        "faults": list(found.backup.program.header_faults),
+        "networks": networks_document(changes),
+    }
+
+
+def export_document(found: Stored, folder: Path, file: Path) -> dict[str, Any]:
+    """``fatektool.history-export/1``."""
+    return {
+        "schema": "fatektool.history-export/1",
+        "file": str(file),
+        **_where(found, folder),
+        "created": found.backup.created,
+        "sha256": found.backup.program.sha256,
+    }
+
+
+def _where(found: Stored, folder: Path) -> dict[str, Any]:
+    return {
+        "history": str(folder),
+        "name": found.name,
+        "revision": found.commit.revision,
+        "recorded": utc(found.commit.time),
+    }
+
+
+def check_document(found: Checked, folder: Path) -> dict[str, Any]:
+    """``fatektool.history-check/1``."""
+    return {
+        "schema": "fatektool.history-check/1",
+        "history": str(folder),
+        "whole": not found.faults,
+        "commits": found.commits,
+        "programs": found.programs,
+        "names": list(found.names),
+        "shallow": found.shallow,
+        "faults": [
+            {"revision": fault.revision, "name": fault.name, "message": fault.message}
+            for fault in found.faults
+        ],
+    }
+
+
+def check_lines(found: Checked) -> Iterator[str]:
+    """What was looked through, and what does not hold."""
+    commits, programs = count(found.commits, "commit"), count(found.programs, "program")
+    looked = f"{commits}, {programs}, {count(len(found.names), 'PLC')} now"
+    yield f"damaged: {count(len(found.faults), 'fault')} in {looked}" if found.faults else f"whole: {looked}"
+    if found.shallow:
+        yield "a shallow clone: what came before is not in it; 'git fetch --unshallow' brings it"
+    for fault in found.faults:
+        yield f"  {_place(fault)}{fault.message}"
+
+
+def _place(fault: Fault) -> str:
+    if fault.revision is None:
+        return ""
+    return f"{fault.name}@{fault.revision[:SHORT]}: " if fault.name else f"{fault.revision[:SHORT]}: "

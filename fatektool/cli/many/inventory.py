@@ -1,0 +1,218 @@
+"""``inventory``: the file that names the PLCs."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import click
+
+from fatektool.cli.shared.inventory_file import inventory_option, inventory_path, open_inventory
+from fatektool.cli.shared.options import PATH, PROTOCOLS, voice_options
+from fatektool.cli.shared.pairs import apart
+from fatektool.errors import DataError, FatektoolError, UsageError
+from fatektool.files.atomic import read_bounded, write_whole
+from fatektool.inventory.add import with_plc
+from fatektool.inventory.entries import Fault
+from fatektool.inventory.find import FILE_NAME, load_inventory, no_inventory
+from fatektool.inventory.select import select
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from fatektool.cli.shared.output import Voice
+    from fatektool.inventory.entries import Inventory, PlcEntry
+
+_MAX_SCAN: Final = 4 << 20
+_MAX_FILE: Final = 16 << 20
+
+
+@click.group("inventory", epilog="Example: fatektool inventory add press -p tcp://192.168.2.3 --tag night")
+def inventory_command() -> None:
+    """Check, list and extend the inventory: the TOML file that names your PLCs.
+
+    'fatektool status -p NAME' and all other commands find a PLC by its name in it.
+    """
+
+
+@inventory_command.command("check", epilog="Example: fatektool inventory check --inventory fatek.toml")
+@inventory_option
+@voice_options
+def check_command(inventory: Path | None, voice: Voice) -> int:
+    """Say all that is wrong with the inventory, by line: exit 0 if nothing is, 1 if something is."""
+    path = inventory_path(inventory)
+    if path is None:
+        raise no_inventory()
+    found = load_inventory(path)
+    found.faults += _faults_of_files(found)
+    document = {
+        "schema": "fatektool.inventory-check/1",
+        "file": str(path),
+        "plcs": len(found.plcs),
+        "faults": [{"line": fault.line, "message": fault.message} for fault in found.faults],
+    }
+    lines = [f"{path}: {fault}" for fault in found.faults]
+    voice.show(document, lines or [f"{path}: {len(found.plcs)} PLCs, nothing is wrong"])
+    return 1 if found.faults else 0
+
+
+def _faults_of_files(found: Inventory) -> Iterator[Fault]:
+    """What is wrong with the files that the PLCs name; each file is told of once."""
+    from fatektool.jobs.snapshots.spec import MAX_SPEC, parse_spec
+    from fatektool.project.program_file import load_program
+
+    seen: set[Path] = set()
+    for entry in found.plcs.values():
+        for key, path in (("spec", entry.spec), ("reference", entry.reference), ("project", entry.project)):
+            if path is None or path in seen:
+                continue
+            seen.add(path)
+            try:
+                if key == "spec":
+                    parse_spec(read_bounded(path, MAX_SPEC), str(path))
+                else:
+                    load_program(path)
+            except FatektoolError as error:
+                yield Fault(None, f"plc.{entry.name}: {key}: {error.message}")
+
+
+@inventory_command.command("list", epilog="Example: fatektool inventory list --select night")
+@click.option("--select", "words", multiple=True, metavar="NAME|TAG|GLOB", help="Only these PLCs.")
+@inventory_option
+@voice_options
+def list_command(inventory: Path | None, words: tuple[str, ...], voice: Voice) -> None:
+    """List the PLCs of the inventory, with all that is said of them."""
+    found = open_inventory(inventory)
+    entries = select(found, words)
+    document = {
+        "schema": "fatektool.inventory/1",
+        "file": str(found.file),
+        "plcs": [_entry_document(entry) for entry in entries],
+    }
+    voice.show(document, _rows(entries))
+
+
+def _entry_document(entry: PlcEntry) -> dict[str, Any]:
+    return {
+        "name": entry.name,
+        "target": entry.target,
+        "station": entry.station,
+        "protocol": entry.protocol,
+        "baud": entry.baud,
+        "format": entry.format,
+        "timeout_s": entry.timeout_s,
+        "retries": entry.retries,
+        "lock_wait_s": entry.lock_wait_s,
+        "tags": list(entry.tags),
+        "spec": None if entry.spec is None else str(entry.spec),
+        "reference": None if entry.reference is None else str(entry.reference),
+        "project": None if entry.project is None else str(entry.project),
+        "expect": entry.expect,
+        "read_only": entry.read_only,
+    }
+
+
+def _rows(entries: list[PlcEntry]) -> Iterator[str]:
+    rows = [(entry.name, entry.target, str(entry.station), entry.protocol) for entry in entries]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row, entry in zip(rows, entries, strict=True):
+        cells = [f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)]
+        yield "  ".join([*cells, ", ".join(entry.tags)]).rstrip()
+
+
+@inventory_command.command(
+    "add",
+    epilog="Example: fatektool scan -p /dev/ttyUSB0 --json | fatektool inventory add hall1 --from -",
+)
+@click.argument("name")
+@click.option("--from", "scan", type=PATH, metavar="FILE|-", help="What 'scan --json' found: each station.")
+@click.option("-p", "--port", "target", metavar="TARGET", help="Where the PLC is.")
+@click.option("-s", "--station", type=click.IntRange(0, 255), help="Its station.  [default: 1]")
+@click.option("--protocol", type=click.Choice(PROTOCOLS), help="What it speaks.")
+@click.option("--baud", type=int, help="Speed of the serial line.")
+@click.option("--format", "line_format", metavar="7E1", help="Data bits, parity, stop bits.")
+@click.option("--tag", "tags", multiple=True, help="A word for --select; repeat for more.")
+@inventory_option
+@voice_options
+def add_command(
+    name: str,
+    voice: Voice,
+    *,
+    scan: Path | None,
+    target: str | None,
+    station: int | None,
+    protocol: str | None,
+    baud: int | None,
+    line_format: str | None,
+    tags: tuple[str, ...],
+    inventory: Path | None,
+) -> None:
+    """Add a PLC under NAME, or all that a scan found under NAME-1, NAME-2 and so on, by station.
+
+    They come to the end of the inventory, all or none of them; what is in the file stays as it is. Without an
+    inventory one is begun in the present folder. A station of a scan that has a name already is left out.
+    """
+    path = inventory_path(inventory) or Path(FILE_NAME)
+    data = read_bounded(path, _MAX_FILE) if path.exists() else b""
+    options = {"station": station, "protocol": protocol, "baud": baud, "format": line_format}
+    given = {key: value for key, value in options.items() if value is not None}
+    if scan is not None:
+        apart(
+            "scan", "target", "station", "protocol", "baud", "line_format", why="the scan says where PLCs are"
+        )
+        wanted = _scanned(scan, name)
+    else:
+        if target is None:
+            raise UsageError("no PLC named", hint="give --port TARGET, or --from FILE with what a scan found")
+        wanted = {name: {"target": target, **given}}
+    added = []
+    known = _known(data, path) if scan is not None else set()
+    for each, values in wanted.items():
+        if scan is not None and (values["target"], values["station"]) in known:
+            voice.say(f"station {values['station']} on {values['target']} is there already")
+            continue
+        data = with_plc(data, path, each, values | ({"tags": list(tags)} if tags else {}))
+        added.append(each)
+    if added:
+        mode = path.stat().st_mode & 0o777 if path.exists() else 0o644
+        write_whole(path, data, overwrite=True, mode=mode)
+    document = {"schema": "fatektool.inventory-add/1", "file": str(path), "added": added}
+    voice.show(document, [f"added {each} to {path}" for each in added])
+
+
+def _known(data: bytes, path: Path) -> set[tuple[str, int]]:
+    from fatektool.inventory.entries import parse_inventory
+
+    return {(entry.target, entry.station) for entry in parse_inventory(data, path).plcs.values()}
+
+
+def _scanned(scan: Path, name: str) -> dict[str, dict[str, Any]]:
+    """The stations of a scan's document, each once, by the names they get.
+
+    Raises:
+        DataError: it is none.
+        UsageError: nobody was found.
+    """
+    data = read_bounded(scan, _MAX_SCAN)
+    try:
+        document = json.loads(data)
+        schema = document["schema"]
+        target = str(document["target"])
+        found = {int(each["station"]): each for each in document["found"][::-1]}
+        stations = {
+            number: {"target": target, "station": number}
+            | {key: each[key] for key in ("protocol", "baud", "format") if each[key] is not None}
+            for number, each in sorted(found.items())
+        }
+    except (ValueError, TypeError, LookupError, RecursionError) as error:
+        raise DataError(
+            f"{scan}: not what 'fatektool scan --json' prints: {error}", hint="is it the right file?"
+        ) from error
+    if schema != "fatektool.scan/1":
+        raise DataError(f"{scan}: expected schema 'fatektool.scan/1', got {schema!r:.80}")
+    if not stations:
+        raise UsageError(f"{scan}: the scan found no PLC", hint="see its own words for what to try")
+    if len(stations) == 1:
+        return {name: next(iter(stations.values()))}
+    return {f"{name}-{number}": values for number, values in stations.items()}

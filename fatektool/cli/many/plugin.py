@@ -1,0 +1,101 @@
+"""The manners of a monitoring plugin: one line, ``FATEK STATE - words | figures``, and exit codes of its own.
+
+0 OK, 1 WARNING, 2 CRITICAL, 3 UNKNOWN; nothing else ever, as whoever reads it would take a 2 of the other
+commands (usage) for CRITICAL and a 5 (data) for an error of the plugin. So errors of any kind end here:
+UNKNOWN.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fatektool.cli.shared.output import print_json
+from fatektool.errors import FatektoolError
+from fatektool.files.times import utc
+from fatektool.jobs.fleet.check import State
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fatektool.jobs.fleet.check import Checked
+
+
+class PluginCommand(click.Command):
+    """A command that ends with 0 to 3, whatever happens."""
+
+    def make_context(
+        self, info_name: str | None, args: list[str], parent: click.Context | None = None, **extra: Any
+    ) -> click.Context:
+        """Read the command line; a wrong one is UNKNOWN."""
+        as_json = "--json" in args
+        try:
+            return super().make_context(info_name, args, parent, **extra)
+        except click.ClickException as error:
+            raise click.exceptions.Exit(unknown(error.format_message(), as_json=as_json)) from error
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run it; what goes wrong is UNKNOWN."""
+        as_json = bool(ctx.params.get("as_json"))
+        try:
+            return super().invoke(ctx)
+        except click.exceptions.Exit:
+            raise
+        except FatektoolError as error:
+            return unknown(str(error), as_json=as_json)
+        except click.ClickException as error:
+            return unknown(error.format_message(), as_json=as_json)
+        except (click.Abort, KeyboardInterrupt):
+            return unknown("interrupted", as_json=as_json)
+        except BrokenPipeError:
+            raise
+        except Exception as error:  # noqa: BLE001  # the last door, as in the other commands
+            words = f"a fault of fatektool itself: {type(error).__name__}: {error}"
+            return unknown(words, as_json=as_json)
+
+
+def plugin_line(state: State, words: str, figures: Mapping[str, str]) -> str:
+    """``FATEK OK - words | label=value …``: a bar in the words would end them."""
+    told = " ".join(words.replace("|", "/").split())
+    data = " ".join(f"{label}={value}" for label, value in figures.items())
+    return f"FATEK {state.name} - {told}" + (f" | {data}" if data else "")
+
+
+def unknown(words: str, *, as_json: bool) -> int:
+    """Say that nothing can be said, and why; give the exit code."""
+    with contextlib.suppress(OSError):
+        if as_json:
+            print_json(check_document(State.UNKNOWN, words, None))
+        else:
+            click.echo(plugin_line(State.UNKNOWN, words, {}))
+    return int(State.UNKNOWN)
+
+
+def check_document(
+    state: State,
+    words: str,
+    found: Checked | None,
+    *,
+    name: str | None = None,
+    target: str | None = None,
+    station: int | None = None,
+    protocol: str | None = None,
+) -> dict[str, Any]:
+    """``fatektool.check/1``; found and place are None where a check did not come to be."""
+    return {
+        "schema": "fatektool.check/1",
+        "time": utc(),
+        "name": name,
+        "target": target,
+        "station": station,
+        "protocol": protocol,
+        "state": state.name,
+        "exit_code": int(state),
+        "words": " ".join(words.split()),
+        "facts": []
+        if found is None
+        else [{"state": fact.state.name, "words": fact.words} for fact in found.facts],
+        "figures": {} if found is None else found.figures,
+    }

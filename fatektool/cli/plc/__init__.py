@@ -1,0 +1,1 @@
+"""Commands for the PLC itself: status, run, stop."""

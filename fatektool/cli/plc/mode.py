@@ -1,0 +1,72 @@
+"""``run`` and ``stop``: what a machine does depends on it, so they ask."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fatektool.cli.shared.addressee import agree, with_status
+from fatektool.cli.shared.broadcast import broadcast_option, means_all, send_to_all
+from fatektool.cli.shared.documents import where
+from fatektool.cli.shared.options import Connection, connection_options, yes_option
+from fatektool.errors import PlcError, PlcRefused
+from fatektool.protocol.commands import Command, RunStop
+
+if TYPE_CHECKING:
+    from fatektool.cli.shared.output import Voice
+
+
+@click.command("run", epilog="Example: fatektool run -p /dev/ttyUSB0 --yes")
+@broadcast_option
+@yes_option
+@connection_options
+def run_command(connection: Connection, voice: Voice, *, broadcast: bool, yes: bool) -> None:
+    """Let the PLC RUN (41), and read the mode back. The machine may move."""
+    _change(connection, voice, run=True, broadcast=broadcast, yes=yes)
+
+
+@click.command("stop", epilog="Example: fatektool stop -p /dev/ttyUSB0 --yes")
+@broadcast_option
+@yes_option
+@connection_options
+def stop_command(connection: Connection, voice: Voice, *, broadcast: bool, yes: bool) -> None:
+    """STOP the PLC (41), and read the mode back. The machine loses its control."""
+    _change(connection, voice, run=False, broadcast=broadcast, yes=yes)
+
+
+def _change(connection: Connection, voice: Voice, *, run: bool, broadcast: bool, yes: bool) -> None:
+    mode = "RUN" if run else "STOP"
+    if means_all(connection, broadcast=broadcast):
+        send_to_all(connection, voice, mode, [RunStop(run)], yes=yes)
+        return
+    with connection.open(voice, needs=(Command.RUN_STOP,), writes=True) as plc:
+        try:
+            here = with_status(plc, plc.brief_status())
+        except PlcRefused as error:
+            raise PlcError(f"{mode} was not sent: the mode comes first, and {error.message}") from error
+        before = here.running
+        if before != run:
+            question = f"Station {here.station} on {here.target} is in {here.mode}. {mode}?"
+            agree(
+                voice,
+                [] if yes else [("model", here.model or "unknown")],
+                [],
+                question,
+                yes=yes,
+                unchanged=f"the PLC stays in {here.mode}",
+            )
+            if run:
+                plc.run()
+            else:
+                plc.stop()
+        document: dict[str, Any] = {
+            "schema": "fatektool.mode/1",
+            **where(plc),
+            "model": here.model,
+            "mode_before": "run" if before else "stop",
+            "mode_after": mode.lower(),
+        }
+    already = " already" if before == run else ""
+    voice.show(document, [f"the PLC is in {mode}{already}", replace(here, running=None).line])

@@ -1,0 +1,1 @@
+"""Commands for programs: backup, verify, restore, inspect, listing, xref, diff."""

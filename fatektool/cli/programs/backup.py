@@ -1,0 +1,99 @@
+"""``backup``: a PLC's program into a file."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import click
+
+from fatektool.cli.shared.documents import saved_document
+from fatektool.cli.shared.image_words import warn_of_image
+from fatektool.cli.shared.options import PATH, Connection, connection_options
+from fatektool.cli.shared.output import Voice, table
+from fatektool.cli.shared.pairs import together
+from fatektool.cli.shared.streams import print_bytes
+from fatektool.errors import FatektoolError, UsageError
+from fatektool.files.atomic import require_place, write_whole
+from fatektool.files.times import stamp, utc
+from fatektool.jobs.programs.backup import backup
+from fatektool.program.archive import Backup, save_backup
+from fatektool.protocol.commands import Command
+
+STDOUT = Path("-")
+
+
+@click.command("backup", epilog="Example: fatektool backup press.json -p /dev/ttyUSB0 -s 3")
+@click.argument("file", required=False, type=PATH)
+@click.option("--force", is_flag=True, help="Replace FILE if it exists.")
+@click.option("--single-pass", is_flag=True, help="Read once instead of twice; nothing is compared.")
+@click.option("--any-header", is_flag=True, help="Keep an image whose header does not hold, marked as such.")
+@click.option("--raw", type=PATH, metavar="FILE.bin", help="Also write the bare pages.")
+@connection_options
+def backup_command(
+    connection: Connection,
+    voice: Voice,
+    *,
+    file: Path | None,
+    force: bool,
+    single_pass: bool,
+    any_header: bool,
+    raw: Path | None,
+) -> None:
+    """Read the PLC's program into FILE.
+
+    Everything is read twice and compared, the header is checked, and FILE is written whole or not at all.
+    Without FILE the name is made of station and time; - is standard output. The PLC may run.
+    """
+    path = file or Path(f"fatek-st{connection.station:02}-{stamp(utc())}.json")
+    together("force", holds=path != STDOUT or raw is not None, needs="a file")
+    require_raw_name(raw, path)
+    for place in (path, raw):
+        if place is not None and place != STDOUT:
+            require_place(place, overwrite=force)
+    with connection.open(voice, needs=(Command.READ_PAGE,)) as plc, voice.progress() as bar:
+        clock = plc.link.transport.clock
+        began = clock()
+        found = backup(plc, single_pass=single_pass, any_header=any_header, progress=bar.update)
+        duration_s = clock() - began
+        counters = plc.link.counters
+    voice.detail(f"line: {counters}")
+    warn_of_image(found.program, voice)
+    if path != STDOUT:
+        save_backup(found, path, overwrite=force)
+    if raw is not None:
+        _write_raw(raw, found, path, overwrite=force)
+    if path == STDOUT:
+        print_bytes(found.to_bytes())
+        return
+    program = found.program
+    size = f"{program.ladder_words} words, {len(program.pages)} pages"
+    rows = [
+        ("saved", path),
+        ("program", f"{program.header.text()}, {size}"),
+        ("passes", f"{found.passes}, equal" if found.passes > 1 else "1, not compared"),
+        ("sha256", program.sha256),
+    ]
+    voice.show(saved_document(found, path, duration_s), table(rows))
+
+
+def _write_raw(raw: Path, found: Backup, path: Path, *, overwrite: bool) -> None:
+    """Write the bare pages, behind the backup: what fails here takes nothing from that."""
+    try:
+        write_whole(raw, found.program.data, overwrite=overwrite)
+    except FatektoolError as error:
+        if path != STDOUT:
+            error.message = f"{path} is saved, but the bare pages are not: {error.message}"
+        raise
+
+
+def require_raw_name(raw: Path | None, file: Path) -> None:
+    """Check that ``--raw`` names a file, and not the one that holds the backup.
+
+    Raises:
+        UsageError: it does not.
+    """
+    if raw == STDOUT:
+        raise UsageError("--raw -: standard output has other uses here, expected a file name")
+    if raw is not None and os.path.realpath(raw) == os.path.realpath(file):
+        raise UsageError(f"{raw} is named twice: expected another name for --raw")

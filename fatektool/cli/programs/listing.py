@@ -1,0 +1,166 @@
+"""``listing``: a program in the vendor's mnemonics."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fatektool.cli.programs.differences import beside
+from fatektool.cli.programs.program_files import comments_beside, comments_options, program_file, warn_of_code
+from fatektool.cli.shared.inventory_file import inventory_option
+from fatektool.cli.shared.options import PATH, voice_options
+from fatektool.cli.shared.report import report_option, write_report
+from fatektool.errors import UsageError
+from fatektool.files.times import utc
+from fatektool.project.comments import text_in
+from fatektool.project.program_file import NO_COMMENTS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+    from pathlib import Path
+
+    from fatektool.cli.shared.output import Voice
+    from fatektool.ladder.instruction import Instruction
+    from fatektool.ladder.networks import Network
+    from fatektool.project.comments import Comments
+    from fatektool.project.program_file import ProgramFile
+
+UNITS = ("main", "sub")
+
+
+@dataclass(frozen=True)
+class NetworkRange:
+    """Networks that a user asks for: ``12``, ``10-19``, ``N0012``."""
+
+    first: int
+    last: int
+
+    @classmethod
+    def parse(cls, text: str) -> NetworkRange:
+        """Read one.
+
+        Raises:
+            UsageError: it is none.
+        """
+        first, dash, last = (part.strip().upper().removeprefix("N") for part in text.partition("-"))
+        last = last if dash else first
+        if not (
+            first.isdecimal() and last.isdecimal() and len(first + last) <= 12 and int(first) <= int(last)
+        ):
+            raise UsageError(f"network {text!r}: expected a number or a range, such as 12 or 10-19")
+        return cls(int(first), int(last))
+
+
+@click.command("listing", epilog="Example: fatektool listing press.json --network 0-9 --comments press.pdw")
+@click.argument("file", type=PATH)
+@click.option(
+    "--network", "wanted", multiple=True, metavar="N|N-M", help="Only these networks; several times."
+)
+@click.option("--words", is_flag=True, help="Show words, and no comments unless named.")
+@comments_options
+@inventory_option
+@report_option
+@voice_options
+def listing_command(
+    file: Path,
+    voice: Voice,
+    *,
+    wanted: tuple[str, ...],
+    words: bool,
+    comments: Path | None,
+    encoding: str | None,
+    inventory: Path | None,
+    report: Path | None,
+) -> None:
+    """List the program in FILE, a backup or a WinProladder project, in the vendor's mnemonics. Needs no PLC.
+
+    What is not the vendor's own word has ~ before it; what is not known stands there in hex behind ??. A
+    project's comments stand beside its elements; with --words they are left out, so that it can be sent to
+    somebody, unless --comments names them.
+    """
+    ranges = [NetworkRange.parse(text) for text in wanted]
+    found = program_file(file, voice, encoding)
+    texts = comments_beside(found, comments, inventory, voice, encoding)
+    in_lines = NO_COMMENTS if words and comments is None else texts
+    networks = _chosen(found.networks, ranges)
+    warn_of_code(found, voice)
+    document = listing_document(found, networks, texts)
+    if report is not None:
+        from fatektool.report.listing import listing_report
+
+        write_report(report, listing_report(document, time=utc()))
+    voice.show(document, listing_lines(networks, in_lines, words=words))
+
+
+def _chosen(networks: Sequence[Network], ranges: Sequence[NetworkRange]) -> list[Network]:
+    """The networks that were asked for, in the program's order.
+
+    Raises:
+        UsageError: there is no such network.
+    """
+    for each in ranges:
+        if each.first >= len(networks):
+            has = f"it has N0000 to {networks[-1].name}" if networks else "it has none"
+            raise UsageError(f"no network {each.first} in the program: {has}")
+    if not ranges:
+        return list(networks)
+    return [
+        network for network in networks if any(each.first <= network.number <= each.last for each in ranges)
+    ]
+
+
+def listing_document(found: ProgramFile, networks: Sequence[Network], comments: Comments) -> dict[str, Any]:
+    """``fatektool.listing/1``."""
+    return {
+        "schema": "fatektool.listing/1",
+        "file": found.name,
+        "header": found.header_document,
+        "unknown_words": found.require_code().unknown_words,
+        "networks": [
+            {
+                "number": network.number,
+                "unit": UNITS[network.unit],
+                "comment": text_in(network.addresses, comments.networks),
+                "instructions": [
+                    _instruction_document(number, word, instruction)
+                    for number, word, instruction in network.places
+                ],
+            }
+            for network in networks
+        ],
+        "comments": dict(comments.elements),
+    }
+
+
+def _instruction_document(number: int, word: int, instruction: Instruction) -> dict[str, Any]:
+    return {
+        "number": number,
+        "word": word,
+        "words": [f"{each:04X}" for each in instruction.words],
+        "text": instruction.text,
+        "elements": list(instruction.elements),
+        "known": instruction.known,
+        "grade": instruction.grade.value,
+    }
+
+
+def listing_lines(networks: Sequence[Network], comments: Comments, *, words: bool) -> Iterator[str]:
+    """The listing for people: a heading a network, a line an instruction."""
+    for network in networks:
+        unit = text_in(network.addresses, comments.units)
+        if unit:
+            yield f"unit {unit}"
+        yield f"{network.name}  {text_in(network.addresses, comments.networks) or ''}".rstrip()
+        yield from _instruction_lines(network, comments.elements, words=words)
+
+
+def _instruction_lines(network: Network, comments: Mapping[str, str], *, words: bool) -> Iterator[str]:
+    for number, _, instruction in network.places:
+        if not instruction.text and not words:  # drawing that the vendor's program does not print
+            continue
+        shown = f"{' '.join(f'{each:04X}' for each in instruction.words):<19}  " if words else ""
+        remark = beside(instruction.elements, comments)
+        line = f"{instruction.text:<28}  {remark}" if remark else instruction.text
+        yield f"  {number:04}  {shown}{line}".rstrip()

@@ -1,0 +1,64 @@
+"""``verify``: is the PLC's program the one on file?"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from fatektool.cli.programs.differences import program_lines
+from fatektool.cli.programs.program_files import comments_for, comments_options, program_file
+from fatektool.cli.shared.documents import verify_document
+from fatektool.cli.shared.options import PATH, Connection, connection_options
+from fatektool.cli.shared.report import report_option, write_report
+from fatektool.cli.shared.unfinished import forget, warn_of_unfinished
+from fatektool.jobs.programs.verify import verify_file
+from fatektool.protocol.commands import Command
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from fatektool.cli.shared.output import Voice
+
+
+@click.command("verify", epilog="Example: fatektool verify press.json -p /dev/ttyUSB0 || mail the-team")
+@click.argument("file", type=PATH)
+@comments_options
+@report_option
+@connection_options
+def verify_command(
+    connection: Connection,
+    voice: Voice,
+    *,
+    file: Path,
+    report: Path | None,
+    comments: Path | None,
+    encoding: str | None,
+) -> int:
+    """Compare the PLC's program with FILE, a backup or a WinProladder project: exit 0 if the same, 1 if not.
+
+    What seems to differ is read twice. The PLC may run.
+    """
+    on_file = program_file(file, voice, encoding)
+    texts = on_file.element_comments
+    if comments is not None or not texts:
+        texts = comments_for(connection, comments, voice, encoding)
+    with connection.open(voice, needs=(Command.READ_PAGE,), finishes=True) as plc, voice.progress() as bar:
+        clock = plc.link.transport.clock
+        began = clock()
+        found = verify_file(plc, on_file, progress=bar.update)
+        document = verify_document(plc, file, on_file.sha256, found, clock() - began, comments=texts)
+    if found.same:
+        forget(connection.target, connection.station, voice)
+    else:
+        warn_of_unfinished(connection.target, connection.station, voice)
+    count = len(found.a.pages)
+    same = f"same: the PLC's program is the one in {file}, {count} pages"
+    if found.pages.b_has_more:
+        voice.warn(f"the PLC has more than the {count} pages of {file}: page {count} and on are not compared")
+    if report is not None:
+        from fatektool.report.program import verify_report
+
+        write_report(report, verify_report(document, found.a))
+    voice.show(document, program_lines(found, same, "file", "PLC", texts))
+    return 0 if found.same else 1

@@ -1,0 +1,110 @@
+"""``xref``: who reads and who writes each element."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fatektool.cli.programs.program_files import comments_beside, comments_options, program_file, warn_of_code
+from fatektool.cli.shared.inventory_file import inventory_option
+from fatektool.cli.shared.options import PATH, voice_options
+from fatektool.errors import UsageError
+from fatektool.ladder.addresses import spans_of
+from fatektool.ladder.cross_reference import CrossReference, Kind
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+    from pathlib import Path
+
+    from fatektool.cli.shared.output import Voice
+    from fatektool.ladder.cross_reference import Finding, Place
+    from fatektool.ladder.networks import Code
+
+_SAID = {
+    Kind.DOUBLE_COIL: "has an OUT in several places: the last one wins",
+    Kind.NEVER_READ: "is written and never read",
+    Kind.NEVER_WRITTEN: "is read and never written",
+}
+_PLACES_SHOWN = 12
+
+
+@click.command("xref", epilog="Example: fatektool xref press.json M421 R100 --comments press.pdw")
+@click.argument("file", type=PATH)
+@click.argument("elements", nargs=-1)
+@comments_options
+@inventory_option
+@voice_options
+def xref_command(
+    file: Path,
+    voice: Voice,
+    *,
+    elements: tuple[str, ...],
+    comments: Path | None,
+    encoding: str | None,
+    inventory: Path | None,
+) -> None:
+    """Show who reads and who writes each of ELEMENTS in the program FILE; without ELEMENTS all. Needs no PLC.
+
+    And what is odd: an OUT in two places, what is written and never read, what is read and never written.
+    What the PLC itself or a display uses looks like that too.
+    """
+    asked = [element.upper() for element in elements]
+    for element in asked:
+        if not spans_of(element):
+            raise UsageError(f"no element {element!r} of a program: expected such as M421, R100, WM8, T5")
+    found = program_file(file, voice, encoding)
+    texts = comments_beside(found, comments, inventory, voice, encoding).elements
+    code = found.require_code()
+    warn_of_code(found, voice)
+    reference = CrossReference(code)
+    shown = asked or reference.elements
+    findings = [each for each in reference.findings() if not asked or each.element in asked]
+    uses = {element: _document(reference, element, texts.get(element)) for element in shown}
+    document = {
+        "schema": "fatektool.xref/1",
+        "file": found.name,
+        "unknown_words": code.unknown_words,
+        "elements": uses,
+        "findings": [
+            {
+                "kind": each.kind.value,
+                "element": each.element,
+                "where": [place._asdict() for place in each.where],
+            }
+            for each in findings
+        ],
+    }
+    voice.show(document, _lines(code, uses, findings))
+
+
+def _document(reference: CrossReference, element: str, comment: str | None) -> dict[str, Any]:
+    uses = reference.uses(element)
+    return {
+        "reads": [place._asdict() for place in uses.reads],
+        "writes": [place._asdict() for place in uses.writes],
+        "comment": comment,
+    }
+
+
+def _lines(code: Code, elements: Mapping[str, Any], findings: Sequence[Finding]) -> Iterator[str]:
+    texts = [instruction.text for instruction in code.instructions]
+    for element, uses in elements.items():
+        yield f"{element}  {uses['comment'] or ''}".rstrip()
+        for name in ("writes", "reads"):
+            for place in uses[name]:
+                number = place["instruction"]
+                yield f"  {name:<6}  N{place['network']:04}  {number:04}  {texts[number]}"
+        if not uses["reads"] and not uses["writes"]:
+            yield "  not in the program"
+    if findings:
+        yield ""
+    for each in findings:
+        yield f"{each.element} {_SAID[each.kind]}: {_networks(each.where)}"
+
+
+def _networks(where: Sequence[Place]) -> str:
+    numbers = list(dict.fromkeys(place.network for place in where))
+    more = len(numbers) - _PLACES_SHOWN
+    shown = ", ".join(f"N{number:04}" for number in numbers[:_PLACES_SHOWN])
+    return f"{shown}, {more} more" if more > 0 else shown

@@ -1,0 +1,200 @@
+"""The PLC that a write goes to, as every question before it and every result behind it name it.
+
+::
+
+    PLC    station 1 on /dev/ttyUSB0
+    model  MC, 28 points, OS 3.1
+    mode   STOP
+    file   press.json
+    from   station 1 on /dev/ttyUSB0, 2026-11-22T03:15:00Z
+    time   about 4 min
+
+A target may come from the environment, and be another machine's: so what is written, and into which PLC, is
+shown before it is agreed to.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+from fatektool.cli.shared.output import table
+from fatektool.cli.shared.unfinished import line_name
+from fatektool.errors import LineError, PlcError, UsageError
+from fatektool.protocol.commands import Command
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from fatektool.cli.shared.output import Voice
+    from fatektool.client import Plc
+    from fatektool.jobs.plcports.tables import WritePlan
+    from fatektool.protocol.status import BriefStatus
+
+_SHORT_S: Final = 90
+
+
+@dataclass(frozen=True, slots=True)
+class Addressee:
+    """The PLC that is written to.
+
+    Attributes:
+        target: as the user named it.
+        station: 1 to 254.
+        model: in words; None where nobody says it.
+        running: None where nobody says it.
+    """
+
+    target: str
+    station: int
+    model: str | None = None
+    running: bool | None = None
+
+    @property
+    def name(self) -> str:
+        """Station and target."""
+        return f"station {self.station} on {self.target}"
+
+    @property
+    def mode(self) -> str | None:
+        """``RUN`` or ``STOP``; None where nobody says it."""
+        return None if self.running is None else "RUN" if self.running else "STOP"
+
+    @property
+    def line(self) -> str:
+        """All of it on one line, for a result: ``station 1 on /dev/ttyUSB0 (FBE, 13K steps, STOP)``."""
+        known = ", ".join(text for text in (self.model, self.mode) if text is not None)
+        return f"{self.name} ({known})" if known else self.name
+
+    def rows(self) -> Iterator[tuple[str, object]]:
+        """What is known of it."""
+        yield "PLC", self.name
+        if self.model is not None:
+            yield "model", self.model
+        if self.mode is not None:
+            yield "mode", self.mode
+
+    def document(self) -> dict[str, Any]:
+        """The same for JSON, beside target and station."""
+        return {"model": self.model, "mode": None if self.mode is None else self.mode.lower()}
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where the data in a file came from.
+
+    Attributes:
+        target: as the user named it then.
+        station: 1 to 254.
+        time: when, UTC.
+    """
+
+    target: str
+    station: int
+    time: str
+
+    def warn_unless_from(self, addressee: Addressee, file: object, voice: Voice) -> None:
+        """Say that a file came from another PLC than the one that is written to."""
+        if self.station != addressee.station or not _same_line(self.target, addressee.target):
+            voice.warn(f"{file} is from station {self.station} on {self.target}, not from this PLC")
+
+    def __str__(self) -> str:
+        return f"station {self.station} on {self.target}, {self.time}"
+
+    def document(self) -> dict[str, Any]:
+        """The origin as JSON has it."""
+        return {"target": self.target, "station": self.station, "time": self.time}
+
+
+def _same_line(one: str, other: str) -> bool:
+    try:
+        return line_name(one) == line_name(other)
+    except UsageError:  # a file's may be anything
+        return one == other
+
+
+class Pace:
+    """How long an exchange takes on this line, measured while a plan is made."""
+
+    def __init__(self, plc: Plc) -> None:
+        self._link = plc.link
+        self._began = self._link.transport.clock()
+        self._before = self._link.counters.exchanges
+
+    @property
+    def passed_s(self) -> float:
+        """How long it is ago."""
+        return self._link.transport.clock() - self._began
+
+    def time_of(self, exchanges: int) -> str:
+        """How long so many more will take, in words."""
+        done = self._link.counters.exchanges - self._before
+        seconds = self.passed_s / max(1, done) * exchanges
+        return spent(seconds) if seconds < 1 else f"about {spent(seconds)}"
+
+
+def time_row(plc: Plc, plan: WritePlan, pace: Pace) -> tuple[str, object]:
+    """How long it takes to write a table or settings, and to read them back."""
+    from fatektool.planner import plan_writes
+
+    requests = plan_writes([(change.element, change.after) for change in plan.changes], plc.link.codec)
+    return "time", pace.time_of(2 * len(requests))
+
+
+def spent(seconds: float) -> str:
+    """A time as people say it."""
+    if seconds < 1:
+        return "under 1 s"
+    return f"{seconds:.0f} s" if seconds < _SHORT_S else f"{seconds / 60:.0f} min"
+
+
+def look(plc: Plc) -> Addressee:
+    """Ask a PLC what it is and how it is (40), where its protocol has that; what does not come is None."""
+    if Command.BRIEF_STATUS not in plc.link.codec.commands:
+        return Addressee(plc.target, plc.link.station)
+    try:
+        return with_status(plc, plc.brief_status())
+    except (LineError, PlcError):
+        return Addressee(plc.target, plc.link.station)
+
+
+def with_status(plc: Plc, brief: BriefStatus) -> Addressee:
+    """The PLC with what it said to 40."""
+    model = brief.model
+    if model is None and not brief.m_series:
+        model = f"code {brief.status2:02X}"
+    return Addressee(plc.target, plc.link.station, model, brief.flags.running)
+
+
+def agree(
+    voice: Voice,
+    rows: Iterable[tuple[str, object]],
+    lines: Iterable[str],
+    question: str,
+    *,
+    yes: bool,
+    unchanged: str = "nothing was written",
+) -> None:
+    """Show what will be written, and into which PLC; ask.
+
+    Args:
+        voice: shows and asks.
+        rows: the PLC's, and more of that kind.
+        lines: what will be done.
+        question: names the PLC too.
+        yes: do not ask.
+        unchanged: what is said if the answer is no.
+
+    Raises:
+        UsageError: not agreed to, or nobody to ask.
+        KeyboardInterrupt: Ctrl-C at the question; bears ``unchanged``.
+    """
+    voice.require_answer(yes=yes)
+    for line in (*table(rows), *lines):
+        voice.say(line)
+    try:
+        agreed = voice.confirm(question, yes=yes)
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(unchanged) from None
+    if not agreed:
+        raise UsageError(f"not agreed to: {unchanged}")

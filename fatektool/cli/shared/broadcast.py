@@ -1,0 +1,78 @@
+"""``-s 0 --broadcast``: a write to every PLC on the line. None of them answers, so nothing is proven."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from fatektool.cli.shared.documents import where
+from fatektool.errors import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from fatektool.cli.shared.options import Connection
+    from fatektool.cli.shared.output import Voice
+    from fatektool.protocol.commands import Request
+
+F = TypeVar("F", bound="Callable[..., Any]")
+
+
+def broadcast_option(function: F) -> F:
+    """``--broadcast``, for a command that needs no answer; the command gets ``broadcast``."""
+    return click.option(
+        "--broadcast",
+        is_flag=True,
+        help="With -s 0: to every PLC on the line. None answers: sent, not proven.",
+    )(function)
+
+
+def means_all(connection: Connection, *, broadcast: bool) -> bool:
+    """True if every PLC on the line is meant. It takes both, station 0 and the option.
+
+    Raises:
+        UsageError: the option without the station.
+    """
+    if broadcast and connection.station != 0:
+        raise UsageError(
+            f"--broadcast is for every PLC on the line: expected station 0, got {connection.station}",
+            hint="add -s 0, or leave out --broadcast",
+        )
+    return broadcast
+
+
+def send_to_all(
+    connection: Connection, voice: Voice, command: str, requests: Sequence[Request[None]], *, yes: bool
+) -> None:
+    """Ask, send, and say that nothing is proven.
+
+    Args:
+        connection: the line.
+        voice: asks and tells.
+        command: what is sent, in a word or two.
+        requests: writes.
+        yes: do not ask.
+
+    Raises:
+        UsageError: not agreed to, or the line is read-only; nothing was sent.
+        LineError: the line is not there or failed; some of them may be sent.
+    """
+    line = replace(connection, station=1)  # a line is opened with a station; which one does not matter
+    with line.open(voice, writes=True) as plc:
+        question = f"'{command}' goes to every PLC on {connection.target}, and none answers. Send?"
+        if not voice.confirm(question, yes=yes):
+            raise UsageError("not agreed to: nothing was sent")
+        for request in requests:
+            plc.broadcast(request)
+        document = {
+            "schema": "fatektool.broadcast/1",
+            **where(plc),
+            "station": 0,
+            "command": command,
+            "sent": len(requests),
+            "verified": False,
+        }
+    count = f"{len(requests)} request{'' if len(requests) == 1 else 's'}"
+    voice.show(document, [f"'{command}': {count} sent to every PLC on the line, not proven: none answers"])

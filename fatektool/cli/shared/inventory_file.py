@@ -1,0 +1,100 @@
+"""Where the command line looks for the inventory, and the names in it."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from fatektool.cli.shared.file_path import FilePath
+from fatektool.errors import FatektoolError
+from fatektool.inventory.find import FILE_NAME, find_inventory, load_inventory, may_be_name, no_inventory
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from click.shell_completion import CompletionItem
+
+    from fatektool.inventory.entries import Inventory, PlcEntry
+
+F = TypeVar("F", bound="Callable[..., Any]")
+
+inventory_option = click.option(
+    "--inventory",
+    type=FilePath(),
+    envvar="FATEKTOOL_INVENTORY",
+    metavar="FILE.toml",
+    help=f"Where names of PLCs stand; by default ./{FILE_NAME}, else that in your configuration folder.  "
+    "[env: FATEKTOOL_INVENTORY]",
+)
+
+
+def inventory_path(named: Path | None) -> Path | None:
+    """The inventory's file: as named, else in the present folder, else the user's own; None for none."""
+    from pathlib import Path
+
+    return find_inventory(named, (Path(FILE_NAME), Path(click.get_app_dir("fatektool")) / FILE_NAME))
+
+
+def open_inventory(named: Path | None) -> Inventory:
+    """The inventory, whole.
+
+    Raises:
+        UsageError: there is none.
+        DataError: something in it does not hold.
+    """
+    path = inventory_path(named)
+    if path is None:
+        raise no_inventory()
+    found = load_inventory(path)
+    found.require_whole()
+    return found
+
+
+def plc_named(word: str, named: Path | None) -> PlcEntry | None:
+    """The PLC of the inventory that ``--port`` means; None if it means a port.
+
+    Raises:
+        UsageError: it can only be a name, and is none.
+        DataError: something in the inventory does not hold.
+    """
+    if not may_be_name(word):
+        return None
+    path = inventory_path(named)
+    if path is None:
+        return None
+    found = load_inventory(path)
+    found.require_whole()
+    if word not in found.plcs and os.path.lexists(word):
+        return None
+    return found.named(word)
+
+
+def complete_target(context: click.Context, _: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    """The names that begin so; else files, as a port is one on most systems."""
+    from pathlib import Path
+
+    from click.shell_completion import CompletionItem
+
+    named = context.params.get("inventory") or os.environ.get("FATEKTOOL_INVENTORY")
+    names = complete_names(None if named is None else Path(named), incomplete)
+    return names or [CompletionItem(incomplete, type="file")]
+
+
+def complete_names(named: Path | None, incomplete: str) -> list[CompletionItem]:
+    """The names that begin so, with what they stand for; none if the inventory cannot be read."""
+    from click.shell_completion import CompletionItem
+
+    try:
+        path = inventory_path(named)
+        found = None if path is None else load_inventory(path)
+    except FatektoolError:  # no place for a message: the command itself will tell
+        return []
+    plcs = () if found is None else found.plcs.values()
+    return [
+        CompletionItem(entry.name, help=f"{entry.target}, station {entry.station}")
+        for entry in plcs
+        if entry.name.startswith(incomplete)
+    ]

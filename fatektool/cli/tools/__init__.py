@@ -1,0 +1,1 @@
+"""Commands for tests and scripts: simulate, schema, completion."""

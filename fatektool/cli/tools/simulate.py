@@ -1,0 +1,251 @@
+"""``simulate``: a PLC for others to test against."""
+
+from __future__ import annotations
+
+import re
+import signal
+import sys
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fatektool.cli.shared.options import PATH, voice_options
+from fatektool.cli.shared.output import print_json
+from fatektool.cli.shared.pairs import apart, given, together
+from fatektool.errors import UsageError
+from fatektool.simulator.build import build_simulation
+from fatektool.simulator.faults import PROBABILITY_KINDS
+from fatektool.simulator.listen.servers import Server
+from fatektool.simulator.models import MODELS
+from fatektool.simulator.plc import FLAGS
+from fatektool.simulator.slaves.registry import DEFAULT_PROTOCOL, SLAVES
+from fatektool.transport.base import LineSettings
+from fatektool.transport.discovery import MODULE_PORT
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from fatektool.cli.shared.output import Voice
+    from fatektool.simulator.listen.listeners import Lines
+
+_DOOR = re.compile(r"(?:\[([^\]]+)\]|([^:]*)):(\d{1,5})|(\d{1,5})", re.ASCII)
+
+_DEFAULT_MODELS = ", ".join(f"{spoken.model} with {name}" for name, spoken in SLAVES.items())
+
+
+@click.command(
+    "simulate",
+    epilog="Example: fatektool simulate --tcp 127.0.0.1:5000 --pty /tmp/plc --baud 9600 --fault drop=0.01",
+)
+@click.option("--tcp", multiple=True, metavar="HOST:PORT", help="Listen on TCP; port 0 picks a free one.")
+@click.option("--udp", multiple=True, metavar="HOST:PORT", help="Listen on UDP.")
+@click.option(
+    "--discovery",
+    multiple=True,
+    metavar="HOST[:PORT]",
+    help="Answer 'scan --network' as an Ethernet module does; the port is 111 unless named.",
+)
+@click.option("--pty", multiple=True, metavar="LINK", help="Be a serial port: a pty, LINK leads to it.")
+@click.option("--protocol", type=click.Choice(list(SLAVES)), default=DEFAULT_PROTOCOL, show_default=True)
+@click.option("--station", multiple=True, type=click.IntRange(1, 254), help="A station; may be repeated.")
+@click.option(
+    "--model",
+    type=click.Choice(list(MODELS)),
+    help=f"What the PLCs are.  [default: {_DEFAULT_MODELS}]",
+)
+@click.option("--ladder-words", type=click.IntRange(1, 65535), help="Another size of the program memory.")
+@click.option("--program", type=PATH, metavar="BACKUP", help="The program in the PLCs.")
+@click.option(
+    "--program-seed",
+    type=int,
+    default=1,
+    show_default=True,
+    help="Which demonstration program, without BACKUP.",
+)
+@click.option(
+    "--swap-program", is_flag=True, help="Exchange the bytes of each word of an FBs demonstration program."
+)
+@click.option("--state", type=PATH, metavar="FILE", help="Keep the PLCs' memory in FILE.")
+@click.option(
+    "--set", "flags", multiple=True, type=click.Choice(FLAGS), help="A state of the PLCs; repeat for more."
+)
+@click.option("--baud", type=click.IntRange(50, 4_000_000), help="Pace the line.")
+@click.option(
+    "--strict-baud", is_flag=True, help="A client of a pty at another speed than --baud is not understood."
+)
+@click.option(
+    "--format",
+    "line_format",
+    help="Bits a character, for the pace.  [default: 7E1; 8E1 for mseries and modbus-rtu]",
+)
+@click.option("--scan-ms", type=click.FloatRange(0, 60_000), default=0.0, help="Time to answer.")
+@click.option(
+    "--fault",
+    multiple=True,
+    metavar="KIND=P",
+    help=f"Go wrong with probability P: {', '.join(PROBABILITY_KINDS)}; bit-errors=P, for each byte;"
+    " power-cut=N, at the N-th write of a page.",
+)
+@click.option("--seed", type=int, default=0, show_default=True, help="Of the faults.")
+@click.option(
+    "--replay", type=PATH, metavar="TRACE", help="Answer as the PLC did that --trace recorded in TRACE."
+)
+@click.option(
+    "--replay-speed",
+    type=click.FloatRange(0, 1_000_000),
+    metavar="N",
+    help="10 for a tenth of the recorded delays, 0 for none.  [default: 1]",
+)
+@click.option(
+    "--latency-timer",
+    type=click.FloatRange(0, 10_000),
+    default=0.0,
+    metavar="MS",
+    help="Give answers out at ticks of MS ms only, as a USB adapter does (16).",
+)
+@click.option("--no-program-commands", is_flag=True, help="Refuse 4F and 50, as an FBs may.")
+@click.option("--no-error-character", is_flag=True, help="Answer 4F and 53 as the paper's figures draw them.")
+@voice_options
+def simulate_command(
+    voice: Voice,
+    *,
+    tcp: tuple[str, ...],
+    udp: tuple[str, ...],
+    discovery: tuple[str, ...],
+    pty: tuple[str, ...],
+    protocol: str,
+    station: tuple[int, ...],
+    model: str | None,
+    ladder_words: int | None,
+    program: Path | None,
+    program_seed: int,
+    swap_program: bool,
+    state: Path | None,
+    flags: tuple[str, ...],
+    baud: int | None,
+    strict_baud: bool,
+    line_format: str | None,
+    scan_ms: float,
+    fault: tuple[str, ...],
+    seed: int,
+    replay: Path | None,
+    replay_speed: float | None,
+    latency_timer: float,
+    no_program_commands: bool,
+    no_error_character: bool,
+) -> None:
+    """Be one or more PLCs with memory, for clients to be tested against.
+
+    Prints one line 'listening …' for each door, and ends on SIGTERM or Ctrl-C. Binds to 127.0.0.1 unless told
+    otherwise.
+
+    For diagnosis there are faults of a line: wrong-line, noise instead of an answer, as when baud or format
+    do not fit; twins, two PLCs at one station; bit-errors, each byte for itself, so that long answers suffer
+    more. The same seed gives the same faults; docs/simulator.md tells of each.
+    """
+    if not (tcp or udp or pty or discovery):
+        raise UsageError("no door named", hint="give --tcp HOST:PORT, --udp HOST:PORT or --pty LINK")
+    doors = [("tcp", door) for door in tcp] + [("udp", door) for door in udp]
+    doors += [("discovery", door if ":" in door else f"{door}:{MODULE_PORT}") for door in discovery]
+    if replay is not None:
+        from fatektool.cli.tools.replay import open_replay, tell_unknown
+
+        speed = 1.0 if replay_speed is None else replay_speed
+        recorded = open_replay(replay, protocol, speed, click.get_current_context(), voice)
+        try:
+            _serve(recorded, voice, doors, pty)
+        finally:
+            tell_unknown(recorded, voice)
+        return
+    _require_effects(protocol, baud, fault)
+    if strict_baud and (baud is None or not pty):
+        raise UsageError("--strict-baud is for a --pty with a --baud")
+    if replay_speed is not None:
+        raise UsageError("--replay-speed is for a recorded PLC", hint="name the recording with --replay")
+    simulation = build_simulation(
+        station or None,
+        model,
+        protocol=protocol,
+        **_program(program, ladder_words, state, voice),
+        program_seed=program_seed,
+        program_swapped=swap_program,
+        program_commands=not no_program_commands,
+        error_character=not no_error_character,
+        state=state,
+        faults=fault,
+        seed=seed,
+        baud=baud,
+        bits_per_char=None if line_format is None else _bits_per_char(line_format),
+        scan_ms=scan_ms,
+        latency_timer_ms=latency_timer,
+    )
+    for plc in simulation.plcs.values():
+        for flag in flags:
+            setattr(plc, flag, True)
+    try:
+        _serve(simulation, voice, doors, pty, baud if strict_baud else None)
+    finally:
+        simulation.save_if_changed()
+
+
+def _program(
+    program: Path | None, ladder_words: int | None, state: Path | None, voice: Voice
+) -> dict[str, Any]:
+    """What the options say of the program in the PLCs."""
+    if state is not None and state.exists():
+        for name in ("program", "program_seed", "swap_program", "ladder_words"):
+            if option := given(name):
+                voice.warn(f"{option} fills a new file only: what {state} holds counts")
+    if program is None:
+        return {} if ladder_words is None else {"ladder_words": ladder_words}
+    from fatektool.program.archive import load_backup
+
+    image = load_backup(program).program
+    if ladder_words not in {None, image.ladder_words}:
+        raise UsageError(f"--ladder-words {ladder_words}: the program has {image.ladder_words}")
+    return {"program": image.pages, "ladder_words": image.ladder_words}
+
+
+def _require_effects(protocol: str, baud: int | None, faults: tuple[str, ...]) -> None:
+    """Refuse what would have no effect."""
+    apart("program", "program_seed", "swap_program", why="they are of the demonstration program")
+    together("line_format", holds=baud is not None, needs="--baud, whose pace it is")
+    together("seed", holds=bool(faults), needs="--fault")
+    together("no_error_character", holds=protocol == "facon", needs="--protocol facon")
+
+
+def _serve(
+    lines: Lines,
+    voice: Voice,
+    doors: list[tuple[str, str]],
+    links: tuple[str, ...],
+    pty_baud: int | None = None,
+) -> None:
+    server = Server(lines)
+    signal.signal(signal.SIGTERM, lambda *_: server.stop())
+    try:
+        make = {"tcp": server.open_tcp, "udp": server.open_udp, "discovery": server.open_discovery}
+        opened = [make[kind](*_host_and_port(text)) for kind, text in doors]
+        opened += [server.open_pty(link, pty_baud) for link in links]
+        if voice.json:
+            addresses = [door.address for door in opened]
+            print_json({"schema": "fatektool.simulate/1", "listening": addresses})
+        else:
+            for door in opened:
+                click.echo(f"listening {door.address}")
+        sys.stdout.flush()
+        server.serve_until()
+    finally:
+        server.close()
+
+
+def _bits_per_char(line_format: str) -> float:
+    line = LineSettings(9600, line_format.upper())
+    return line.byte_time_s * line.baud
+
+
+def _host_and_port(text: str) -> tuple[str, int]:
+    match = _DOOR.fullmatch(text)
+    if match is None or int(match[3] or match[4]) > 65535:
+        raise UsageError(f"door {text[:60]!r}: expected HOST:PORT, such as 127.0.0.1:5000")
+    return match[1] or match[2] or "127.0.0.1", int(match[3] or match[4])

@@ -1,0 +1,35 @@
+"""JSON that says one thing: no key twice in an object, no NaN and no Infinity.
+
+What reads a key that stands twice takes the last one, what looks with other eyes the first: a file that two
+readers understand in two ways is refused.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from fatektool.files.plain_text import plain_text
+
+
+def read_json(data: bytes) -> Any:
+    """Read a document.
+
+    Raises:
+        ValueError: it is none, it is too deep, or it could be read in two ways.
+    """
+    try:
+        return json.loads(plain_text(data), object_pairs_hook=_once_each, parse_constant=_no_number)
+    except RecursionError as error:
+        raise ValueError("too deep") from error
+
+
+def _once_each(items: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(items)
+    if len(found) != len(items):
+        raise ValueError("a key stands twice")
+    return found
+
+
+def _no_number(text: str) -> float:
+    raise ValueError(f"{text} is no JSON")

@@ -1,0 +1,247 @@
+"""Reading elements of any kind, all that is asked in the fewest bytes.
+
+An element that the PLC refuses does not lose the others. When a request for several is refused, the PLC is
+asked how many it has (53). Past that, the first of neighbours is asked, and if it is refused, the others are
+not. All else that was refused together is divided: see ``division.py``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import chain
+from typing import TYPE_CHECKING, Any, Final
+
+from fatektool.errors import PlcRefused
+from fatektool.exchange.batch import ask_all, ask_until_refused, proven
+from fatektool.jobs.elements.division import Division, Refusals
+from fatektool.jobs.elements.extent import ask_limits, excluded, extent_of, neighbours
+from fatektool.planner import Values, plan_reads, turnaround_bytes
+from fatektool.planner.atoms import Atom, atoms_of
+from fatektool.protocol.commands import (
+    ReadDiscretes,
+    ReadMixed,
+    ReadRegisters,
+    Request,
+    WriteDiscretes,
+    WriteMixed,
+    WriteRegisters,
+)
+from fatektool.protocol.elements import Element, Stretch
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+
+    from fatektool.client import Plc
+
+TYPICAL_TURNAROUND_S: Final = 0.010
+"""A PLC answers once a program scan: some milliseconds. The plan hardly depends on it."""
+
+
+@dataclass(slots=True)
+class Reading:
+    """What was read.
+
+    Attributes:
+        values: raw and unsigned, by element; a discrete is 0 or 1.
+        errors: of each element without a value: what the PLC said to it, or why it was not asked.
+        not_asked: those of them that were not asked.
+        requests: how many requests it took.
+        ended: when the last answer was there, on the transport's clock.
+    """
+
+    values: dict[Element, int] = field(default_factory=dict)
+    errors: dict[Element, str] = field(default_factory=dict)
+    not_asked: set[Element] = field(default_factory=set)
+    requests: int = 0
+    ended: float = 0.0
+
+
+def read_elements(
+    plc: Plc, elements: Iterable[Element | Stretch], *, limits: Mapping[str, int] | None = None
+) -> Reading:
+    """Read elements of any kind.
+
+    Args:
+        plc: the PLC.
+        elements: in any order, also in stretches, whose elements are named when all is read.
+        limits: how many of a kind the PLC has, by symbol; None if it has not been asked.
+
+    Raises:
+        LineError: no answer.
+    """
+    wanted = list(dict.fromkeys(elements))
+    reader = _Reader(plc, limits)
+    reader.read(wanted)
+    ended = plc.link.transport.clock()
+    named_one_by_one = _each(wanted)
+    errors = reader.refusals.errors
+    value = reader.known.value
+    return Reading(
+        {element: value(element) for element in named_one_by_one if element not in errors},
+        {element: errors[element] for element in named_one_by_one if element in errors},
+        reader.refusals.not_asked,
+        reader.requests,
+        ended,
+    )
+
+
+def _each(elements: Iterable[Element | Stretch]) -> list[Element]:
+    """All elements, those of stretches too, once."""
+    parts = (each if isinstance(each, Stretch) else (each,) for each in elements)
+    return list(dict.fromkeys(chain.from_iterable(parts)))
+
+
+class _Reader:
+    """Reads, and finds out what is refused."""
+
+    def __init__(self, plc: Plc, limits: Mapping[str, int] | None) -> None:
+        self._plc = plc
+        self._limits = limits
+        self._answers: list[tuple[Request[Any], Any]] = []
+        self._fenced = False
+        self.known = Values()
+        self.refusals = Refusals()
+        self.requests = 0
+
+    def read(self, elements: Sequence[Element | Stretch]) -> None:
+        """Read all of these, or know why not."""
+        requests = self._plan(elements)
+        refused, unasked = self._ask(requests, stop=self._limits is None)
+        if not refused:
+            return
+        wanted = sorted(_each(elements))
+        missing = self._missing(wanted)
+        if self._limits is None and len(missing) > 1:
+            self._limits = ask_limits(self._plc)
+            self.requests += 1
+            inside = self._leave_out_excluded(missing, wanted)
+            if unasked or len(inside) < len(missing):
+                refused, _ = self._ask(self._plan(inside))
+                missing = self._missing(inside)
+
+        def divide(division: Division) -> None:
+            for part in by_request(missing, refused):
+                division.divide(part)
+
+        if missing:
+            self._search(wanted, divide)
+
+    def _leave_out_excluded(self, missing: Sequence[Element], wanted: Sequence[Element]) -> list[Element]:
+        """Ask the first of neighbours that the PLC says it does not have; give what is still to be read."""
+        has = self._limits or {}
+        outside = [element for element in missing if excluded(element, has)]
+        if not outside:
+            return list(missing)
+
+        def ask_first(division: Division) -> None:
+            for first, *others in neighbours(outside):
+                if division.refuses(first):
+                    says = f"its status (53) says that the PLC has {extent_of(first, has)}"
+                    self.refusals.leave_out(others, f"{first} is refused, and {says}")
+
+        self._search(wanted, ask_first)  # what is not refused shows that the PLC has more than it says
+        return [element for element in missing if element not in self.refusals.errors]
+
+    def _search(self, wanted: Sequence[Element], work: Callable[[Division], None]) -> None:
+        """Ask one thing after the other, each by what was answered before, and have it proven."""
+        answers, errors, left_out = self._answers, self.refusals.errors, self.refusals.not_asked
+
+        def search() -> None:
+            self.known, self._answers = Values(), []
+            for request, answer in answers:
+                self._take(request, answer)
+            self.refusals = Refusals(dict(errors), set(left_out))
+            work(Division(wanted, self._ask_together, self._ask_alone, self.refusals))
+
+        def again() -> None:
+            self._fenced = True
+            search()
+            self._fenced = False
+
+        proven(self._plc.link, search, again)
+
+    def _take(self, request: Request[Any], answer: Any) -> None:
+        self._answers.append((request, answer))
+        self.known.take(request, answer)
+
+    def _plan(self, elements: Sequence[Element | Stretch]) -> list[Request[Any]]:
+        codec = self._plc.link.codec
+        return plan_reads(elements, codec, turnaround=turnaround(self._plc), limits=self._limits)
+
+    def _missing(self, elements: Iterable[Element]) -> list[Element]:
+        return [element for element in elements if element not in self.known]
+
+    def _ask(
+        self, requests: Sequence[Request[Any]], *, stop: bool = False
+    ) -> tuple[list[Request[Any]], Sequence[Request[Any]]]:
+        """Ask all, or to the first that is refused; give those that are refused, and the rest."""
+        refused: list[Request[Any]] = []
+        while requests and not (stop and refused):
+            some = requests[:1] if self._fenced else requests
+            if self._fenced:
+                self._plc.link.fence(some[0])
+            answers, refusal = ask_until_refused(self._plc.link, some)
+            for request, answer in zip(some, answers, strict=False):
+                self._take(request, answer)
+            rest = requests[len(answers) :]
+            if refusal is not None:
+                refused.append(rest[0])
+                rest = rest[1:]
+            self.requests += len(requests) - len(rest)
+            requests = rest
+        return refused, requests
+
+    def _ask_together(self, elements: Sequence[Element]) -> list[Element]:
+        refused, _ = self._ask(self._plan(elements))
+        return self._missing(elements) if refused else []
+
+    def _ask_alone(self, element: Element) -> str | None:
+        one = element.kind.bits == 1
+        request: Request[Any] = ReadDiscretes(element, 1) if one else ReadRegisters(element, 1)
+        self.requests += 1
+        if self._fenced:
+            self._plc.link.fence(request)
+        try:
+            (answer,) = ask_all(self._plc.link, [request])
+        except PlcRefused as error:
+            return error.message
+        self._take(request, answer)
+        return None
+
+
+def turnaround(plc: Plc) -> float:
+    """A PLC's typical turnaround, in bytes of its line."""
+    return turnaround_bytes(TYPICAL_TURNAROUND_S, plc.link.byte_time_s)
+
+
+def _parts(request: Request[Any]) -> Iterator[Element]:
+    """The elements that a request reads or writes."""
+    match request:
+        case ReadMixed(elements):
+            yield from elements
+        case WriteMixed(items):
+            yield from (element for element, _ in items)
+        case ReadDiscretes(first, count) | ReadRegisters(first, count):
+            yield from (first.after(place) for place in range(count))
+        case WriteDiscretes(first, values) | WriteRegisters(first, values):
+            yield from (first.after(place) for place in range(len(values)))
+
+
+def by_request(elements: Sequence[Element], requests: Sequence[Request[Any]]) -> list[list[Element]]:
+    """Elements by the request that they are in; what is in none comes last."""
+    owner: dict[Atom, int] = {}
+    for number, request in enumerate(requests):
+        for part in _parts(request):
+            owner |= dict.fromkeys(atoms_of(part), number)
+    groups: dict[int, list[Element]] = {}
+    for element in elements:
+        number = min(owner.get(atom, len(requests)) for atom in atoms_of(element))
+        groups.setdefault(number, []).append(element)
+    return [groups[number] for number in sorted(groups)]
+
+
+def named(names: Iterable[str], most: int = 5) -> str:
+    """Some names for a message: the first few, and how many more there are."""
+    listed = list(names)
+    more = f" and {len(listed) - most} more" if len(listed) > most else ""
+    return ", ".join(listed[:most]) + more

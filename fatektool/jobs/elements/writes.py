@@ -1,0 +1,212 @@
+"""Writing elements of any kind: in the fewest bytes, read back, what did not take named with its reason."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from fatektool.errors import LineError, PlcRefused, RestoreIncomplete, UsageError
+from fatektool.jobs.elements.disabled import read_disabled
+from fatektool.jobs.elements.division import Division, Refusals
+from fatektool.jobs.elements.reads import by_request, named, read_elements, turnaround
+from fatektool.jobs.elements.selection import overlapping
+from fatektool.planner import plan_writes
+from fatektool.planner.atoms import atoms_of
+from fatektool.protocol.commands import (
+    Request,
+    WriteDiscretes,
+    WriteRegisters,
+)
+from fatektool.protocol.elements import Element
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from fatektool.client import Plc
+
+
+@dataclass(frozen=True, slots=True)
+class NotTaken:
+    """A write that did not take, or that is not proven.
+
+    Attributes:
+        element: which.
+        wanted: what was written, raw.
+        got: what it holds instead, raw; None if it cannot be read.
+        reason: why, as far as that is known.
+        acknowledged: False if the PLC refused the write, or it was not even tried.
+    """
+
+    element: Element
+    wanted: int
+    got: int | None
+    reason: str
+    acknowledged: bool = True
+
+    def words(self, shown: Callable[[int], str], place: str = "") -> str:
+        """What became of it.
+
+        Args:
+            shown: a raw value as the user reads it.
+            place: the element, where it is told under another name.
+        """
+        wanted = shown(self.wanted) + (f" in {place}" if place else "")
+        if self.got is not None:
+            return f"did not take: expected {wanted}, it holds {shown(self.got)}: {self.reason}"
+        if self.acknowledged:  # the refusal is of the read-back, which nobody asked for
+            return f"written and acknowledged, but not proven: it cannot be read back: {self.reason}"
+        return f"did not take: expected {wanted}: {self.reason}"
+
+
+def write_elements(plc: Plc, items: Sequence[tuple[Element, int]]) -> list[NotTaken]:
+    """Write elements of any kind, read all back, and tell what did not take.
+
+    Args:
+        plc: the PLC.
+        items: elements with raw, unsigned values.
+
+    Raises:
+        UsageError: two of them share a discrete or register; nothing was sent.
+        LineError: no answer; some of them may be written.
+    """
+    both = overlapping(element for element, _ in items)
+    if both is not None:
+        raise UsageError(f"{both[0]} and {both[1]} overlap: what should be there?")
+    refused = _Writer(plc, dict(items)).write()
+    found = read_elements(plc, [element for element, _ in items])
+    failed = [
+        (element, wanted)
+        for element, wanted in items
+        if found.values.get(element) != wanted or element in refused
+    ]
+    acknowledged = [
+        (element, wanted ^ found.values[element])
+        for element, wanted in failed
+        if element not in refused and element in found.values
+    ]
+    reasons = found.errors | _why(plc, acknowledged) | refused
+    return [
+        NotTaken(
+            element, wanted, found.values.get(element), reasons[element], acknowledged=element not in refused
+        )
+        for element, wanted in failed
+    ]
+
+
+def write_planned(
+    plc: Plc, items: Sequence[tuple[Element, int]], safety: str | None, *, failed: str, values: str = "values"
+) -> list[NotTaken]:
+    """``write_elements``, for what was planned and shown: one error tells of a line that failed on the way.
+
+    Args:
+        plc: the PLC.
+        items: elements with raw, unsigned values.
+        safety: where the present values are saved, for messages.
+        failed: what has not come to its end, such as "the table was not written whole".
+        values: what is written.
+
+    Raises:
+        LineError: no answer; nothing was written, and so with ``KeyboardInterrupt``.
+        RestoreIncomplete: no answer, or an interrupt, after the first write was sent.
+    """
+    sent = plc.link.counters.writes
+    try:
+        return write_elements(plc, items)
+    except (LineError, KeyboardInterrupt) as error:
+        if plc.link.counters.writes == sent:
+            raise
+        cause = error.message if isinstance(error, LineError) else "interrupted"
+        raise RestoreIncomplete(
+            f"{failed} ({cause}): some of {len(items)} {values} may be written",
+            hint=f"run it again: it writes what is left; the {values} before: {safety or 'not saved'}",
+            safety_snapshot=safety,
+            cause=cause,
+        ) from error
+
+
+class _Writer:
+    """Writes, and finds out what is refused."""
+
+    def __init__(self, plc: Plc, values: dict[Element, int]) -> None:
+        self._plc = plc
+        self._values = values
+        self._failed: list[Request[None]] = []
+
+    def write(self) -> dict[Element, str]:
+        """Write all; what the PLC says of those that it refuses, or why one was not asked."""
+        wanted = sorted(self._values)
+        left = self._write_together(wanted)
+        if not left:
+            return {}
+        groups = by_request(left, self._failed)
+        unread = read_elements(self._plc, left).errors  # what cannot be read is not tried alone
+        refusals = Refusals(
+            {element: f"refused, and it cannot be read either: {said}" for element, said in unread.items()}
+        )
+        division = Division(wanted, self._write_together, self._write_alone, refusals)
+        for group in groups:
+            writable = [element for element in group if element not in unread]
+            if len(writable) < len(group):
+                writable = self._write_together(writable)
+            division.divide(writable)
+        return refusals.errors
+
+    def _write_together(self, elements: Sequence[Element]) -> list[Element]:
+        self._failed = []
+        for request in _plan(self._plc, [(element, self._values[element]) for element in elements]):
+            try:
+                self._plc.link.ask(request)
+            except PlcRefused:
+                self._failed.append(request)
+        if not self._failed:
+            return []
+        groups = by_request(elements, self._failed)
+        if len(groups) > len(self._failed):
+            groups.pop()  # those whose requests were not refused
+        return sorted(element for group in groups for element in group)
+
+    def _write_alone(self, element: Element) -> str | None:
+        value = self._values[element]
+        one = element.kind.bits == 1
+        try:
+            self._plc.link.ask(
+                WriteDiscretes(element, (bool(value),)) if one else WriteRegisters(element, (value,))
+            )
+        except PlcRefused as error:
+            return error.message
+        return None
+
+
+def _plan(plc: Plc, items: list[tuple[Element, int]]) -> list[Request[None]]:
+    return plan_writes(items, plc.link.codec, turnaround=turnaround(plc))
+
+
+def _why(plc: Plc, failed: list[tuple[Element, int]]) -> dict[Element, str]:
+    """Why writes that were acknowledged did not take.
+
+    Args:
+        plc: the PLC.
+        failed: elements, and the bits that are not as they were written.
+    """
+    suspects: dict[Element, list[Element]] = {}
+    for element, wrong in failed:
+        atoms = atoms_of(element)
+        if element.kind.bits == len(atoms):
+            suspects[element] = [Element(*atom) for place, atom in enumerate(atoms) if wrong >> place & 1]
+    flags, _ = read_disabled(plc, [each for some in suspects.values() for each in some])
+    reasons = {}
+    for element, _ in failed:
+        held = [each for each in suspects.get(element, ()) if flags.get(each)]
+        if held:
+            names = "it is" if held == [element] else f"{named(map(str, held))} {'are' if held[1:] else 'is'}"
+            reasons[element] = (
+                f"{names} disabled: 'fatektool discrete set' and 'reset' still switch it, "
+                f"'discrete enable' gives it back"
+            )
+        elif element.symbol.endswith("X"):
+            reasons[element] = "an input follows its terminal unless it is disabled"
+        else:
+            reasons[element] = (
+                "acknowledged, but it holds something else: read-only, or the program writes it too"
+            )
+    return reasons

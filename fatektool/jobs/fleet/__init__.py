@@ -1,0 +1,1 @@
+"""Many PLCs: what runs side by side, what is checked, who is informed."""

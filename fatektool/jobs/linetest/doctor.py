@@ -1,0 +1,204 @@
+"""A short examination of a PLC and its line: what is wrong, by what evidence, and what to do.
+
+A short loopback test comes first, its rules are ``diagnosis``. If the line works, the brief status (40) tells
+what the PLC itself has to complain of, and an FBs's R4058 and R4059 what its high-speed link has
+(``high_speed``). If it does not, and it has a speed, the usual speeds and formats are tried: a PLC that
+answers there explains the silence here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+
+from fatektool.errors import LineError, PlcError, TransportClosed
+from fatektool.jobs.linetest.diagnosis import SLOW_PLC, diagnose
+from fatektool.jobs.linetest.enough_time import EnoughTime, find_enough_time
+from fatektool.jobs.linetest.finding import Case, Finding
+from fatektool.jobs.linetest.high_speed import high_speed_findings
+from fatektool.jobs.linetest.loopback.result import LoopbackPlan
+from fatektool.jobs.linetest.loopback.run import run_loopback
+from fatektool.jobs.linetest.scan import scan
+from fatektool.jobs.linetest.scan_result import ScanResult, Setting, Station
+from fatektool.protocol.line_settings import BAUDS, FORMATS
+from fatektool.transport.base import LineSettings
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fatektool.client import Plc
+    from fatektool.jobs.linetest.loopback.result import LoopbackResult
+    from fatektool.protocol.status import BriefStatus
+
+FIRST_LOOK: Final = LoopbackPlan(count=6, max_error_rate=1.0)
+SHORT_TEST: Final = LoopbackPlan(count=120, duration_s=10.0)
+LONGEST_SEARCH_S: Final = 60.0
+FACTORY_STATION: Final = 1
+
+
+@dataclass(slots=True)
+class Examination:
+    """What was found.
+
+    Attributes:
+        loopback: the test's figures.
+        brief: the PLC's brief status; None if it gave none.
+        findings: what the rules say.
+        searched: the search for PLCs at another speed, format or station; None if there was no need of it.
+        enough: the time-out that a PLC needs whose answers come late; None if none did.
+    """
+
+    loopback: LoopbackResult
+    brief: BriefStatus | None = None
+    findings: list[Finding] = field(default_factory=list)
+    searched: ScanResult | None = None
+    enough: EnoughTime | None = None
+
+    @property
+    def elsewhere(self) -> list[Station]:
+        """Who was found by the search."""
+        return [] if self.searched is None else self.searched.found
+
+    @property
+    def healthy(self) -> bool:
+        """True if no finding is a fault."""
+        return not any(finding.fault for finding in self.findings)
+
+
+def examine(plc: Plc, on_step: Callable[[str, int, int], object] = lambda *_: None) -> Examination:
+    """Examine a PLC and its line.
+
+    Args:
+        plc: who.
+        on_step: is told what is being done, how much of it is done, and of how much.
+
+    Raises:
+        LineError: the line was lost.
+    """
+    link = plc.link
+    result = run_loopback(plc, FIRST_LOOK, _told(on_step, FIRST_LOOK))
+    enough, late = None, []
+    if result.heard.late_s and result.ended == "count":
+        given_s = link.timeout_s
+        on_step("longer time-out", 0, 1)
+        enough = find_enough_time(plc, result.heard.late_s)
+        late.append(_answers_late(enough, result, given_s))
+    if (result.total.ok or (enough and enough.ok)) and result.ended == "count":
+        result = run_loopback(plc, SHORT_TEST, _told(on_step, SHORT_TEST))
+    if result.ended == "interrupted":
+        raise KeyboardInterrupt
+    if result.lost is not None:
+        raise TransportClosed(result.lost)
+    said = diagnose(Case.of(result, link))
+    if enough is not None:  # which knows more of it
+        said = late + [each for each in said if each.rule != SLOW_PLC]
+    found = Examination(result, findings=said, enough=enough)
+    if result.total.ok:
+        try:
+            found.brief = plc.brief_status()
+        except (LineError, PlcError) as error:
+            found.findings.append(
+                Finding(
+                    "no-status",
+                    fault=True,
+                    finding="the PLC gives no status",
+                    evidence=error.message,
+                    advice=error.hint or "run again",
+                )
+            )
+        else:
+            found.findings += _of_flags(found.brief)
+            found.findings += high_speed_findings(plc)
+    elif link.transport.line is not None:
+        found.searched = _look_elsewhere(plc, on_step)
+        found.findings += [_answers_elsewhere(station) for station in found.elsewhere]
+    return found
+
+
+def _told(
+    on_step: Callable[[str, int, int], object], plan: LoopbackPlan
+) -> Callable[[LoopbackResult], object]:
+    return lambda result: on_step("loopback", result.total.sent, plan.count or 0)
+
+
+def _answers_late(enough: EnoughTime, seen: LoopbackResult, given_s: float) -> Finding:
+    advice = f"give --timeout {enough.timeout_s:g} with every command"
+    if not enough.proven:
+        advice = (
+            f"even with --timeout {enough.timeout_s:g} only {enough.ok} of {enough.sent} came back: "
+            "look for what holds the PLC or the gateway up"
+        )
+    return Finding(
+        SLOW_PLC,
+        fault=True,
+        finding="the PLC answers late",
+        evidence=f"{seen.heard.late} answers came after --timeout {given_s:g}; with {enough.timeout_s:g} s "
+        f"{enough.ok} of {enough.sent} came back, the slowest after {enough.slowest_s:.2f} s",
+        advice=advice,
+    )
+
+
+def _look_elsewhere(plc: Plc, on_step: Callable[[str, int, int], object]) -> ScanResult:
+    """Try all speeds that these PLCs have, for a bounded time; the line is left as it was."""
+    link = plc.link
+    carried = [form for form in FORMATS if int(form[0]) >= (link.codec.data_bits or 0)]
+    settings = [Setting(link.codec, LineSettings(baud, form)) for form in carried for baud in BAUDS]
+    try:
+        result = scan(
+            link.transport,
+            settings,
+            sorted({FACTORY_STATION, link.station}),
+            timeout_s=link.timeout_s,
+            retries=0,
+            most=1,
+            longest_s=LONGEST_SEARCH_S,
+            on_probe=lambda done, total: on_step("other settings", done, total),
+        )
+    finally:
+        link.transport.set_line(link.line)
+    if result.interrupted:
+        raise KeyboardInterrupt
+    return result
+
+
+def _answers_elsewhere(found: Station) -> Finding:
+    line = found.setting.line
+    return Finding(
+        "answers-elsewhere",
+        fault=True,
+        finding=f"station {found.station} answers at {line}",
+        evidence="one exchange of its brief status (40)",
+        advice=f"give --station {found.station} --baud {line.baud} --format {line.format}",
+    )
+
+
+# What the bits mean beyond their names no paper says: [E:battery], [E:watchdog].
+_FLAGS: Final = (
+    (
+        "battery_low",
+        "the battery is low",
+        "take a backup and a snapshot now, then change it as the manual of this PLC says",
+    ),
+    ("ladder_checksum_error", "the program is damaged", "'fatektool restore' a good backup; take one first"),
+    (
+        "watchdog_timeout",
+        "the watchdog's time ran out",
+        "a scan of the program may have taken too long: look for loops; the mode says whether the PLC runs",
+    ),
+    ("emergency_stop", "the emergency stop is active", "make the machine safe, then release it"),
+)
+
+
+def _of_flags(brief: BriefStatus) -> list[Finding]:
+    """What the PLC itself complains of."""
+    return [
+        Finding(
+            name.replace("_", "-"),
+            fault=True,
+            finding=words,
+            evidence=f"flag {name} of its status (40)",
+            advice=advice,
+        )
+        for name, words, advice in _FLAGS
+        if getattr(brief.flags, name)
+    ]

@@ -1,0 +1,83 @@
+"""How long a time-out a PLC needs whose answers come late: from the time seen, and proven by a try."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from fatektool.exchange.no_answer import longer_timeout
+from fatektool.jobs.linetest.loopback.result import LoopbackPlan
+from fatektool.jobs.linetest.loopback.run import run_loopback
+
+if TYPE_CHECKING:
+    from fatektool.client import Plc
+
+_TRY: Final = LoopbackPlan(count=4, sizes=(0, 16, 64), max_error_rate=1.0)
+_MOST_TRIES: Final = 3
+_LONGEST_S: Final = 10.0
+_QUIET_TRIES: Final = 4
+
+
+@dataclass(frozen=True, slots=True)
+class EnoughTime:
+    """A time-out, and what came of a try of it.
+
+    Attributes:
+        timeout_s: the time-out.
+        sent: loopbacks.
+        ok: those that came back in this time.
+        slowest_s: how long the slowest of them took, beside wire time.
+    """
+
+    timeout_s: float
+    sent: int
+    ok: int
+    slowest_s: float
+
+    @property
+    def proven(self) -> bool:
+        """True if all came back."""
+        return 0 < self.ok == self.sent
+
+
+def find_enough_time(plc: Plc, late_s: float) -> EnoughTime:
+    """Try longer time-outs until one is enough; the link has the last one then.
+
+    Args:
+        plc: whose answers came late.
+        late_s: the longest that one took.
+
+    Raises:
+        KeyboardInterrupt: as it came.
+        LineError: the line was lost.
+    """
+    link = plc.link
+    timeout_s = min(longer_timeout(late_s), _LONGEST_S)
+    tried = EnoughTime(timeout_s, 0, 0, 0.0)
+    for _ in range(_MOST_TRIES):
+        _wait_for_quiet(plc, timeout_s)
+        link.timeout_s = timeout_s
+        result = run_loopback(plc, _TRY)
+        if result.ended == "interrupted":
+            raise KeyboardInterrupt
+        total = result.total
+        slowest_s = (result.turnaround.summary_ms()["max"] or 0.0) / 1000
+        if total.ok == total.sent:
+            link.timeout_s = min(timeout_s, longer_timeout(slowest_s))  # all of them came in that, too
+            return EnoughTime(link.timeout_s, total.sent, total.ok, slowest_s)
+        tried = EnoughTime(timeout_s, total.sent, total.ok, slowest_s)
+        timeout_s = min(max(longer_timeout(result.heard.late_s), 2 * timeout_s), _LONGEST_S)
+        if timeout_s == tried.timeout_s:
+            break
+    return tried
+
+
+def _wait_for_quiet(plc: Plc, quiet_s: float) -> None:
+    """Let come what is still on its way."""
+    hearing, clock = plc.link.hearing, plc.link.transport.clock
+    for _ in range(_QUIET_TRIES):
+        heard = hearing.counters.bytes_heard
+        hearing.listen_until(clock() + quiet_s)
+        if hearing.counters.bytes_heard == heard:
+            break
+    hearing.fenced()

@@ -1,0 +1,1 @@
+"""The loopback test: its data, its exchanges, its result."""

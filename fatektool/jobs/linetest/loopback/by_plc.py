@@ -1,0 +1,126 @@
+"""The exchange of 4E: a PLC sends back what it is sent, in frames of its protocol.
+
+A request's echo and its answer are the same by content. So before the first exchange another request is sent,
+by which an echo is known (``Link.learn_echo``).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from fatektool.errors import FrameError, LineError, PlcRefused, TransportClosed, TransportError
+from fatektool.jobs.linetest.loopback.exchange import Exchanger
+from fatektool.protocol.commands import Command, Loopback
+
+if TYPE_CHECKING:
+    from fatektool.exchange.link import Link
+    from fatektool.jobs.linetest.loopback.result import Heard
+    from fatektool.protocol.codec import Frame
+
+_LEARNING_TRIES: Final = 3
+_WORST_FIRST: Final = ("mismatch", "checksum", "garbled", "stale")
+
+
+class PlcExchanger(Exchanger):
+    """4E, once each."""
+
+    def __init__(self, link: Link, heard: Heard) -> None:
+        super().__init__(link, heard)
+        self.characters = link.codec.loopback_alphabet
+        self._seen: set[str] = set()  # in this exchange
+        link.hearing.on_stray = self._on_stray
+        link.hearing.on_bad_bytes = self._on_bad_bytes
+
+    @property
+    def bytes_heard(self) -> int:
+        """All bytes that came so far."""
+        return self._link.counters.bytes_heard
+
+    @property
+    def echoes(self) -> bool | None:
+        """True on a line that gives back what it takes; None if that is not known."""
+        return self._link.echoes
+
+    def begin(self) -> None:
+        """Learn whether the line echoes. From now on every answer has the same time."""
+        self._link.patient = False
+        self._link.hearing.late_s = 0.0
+        self._learn_echo()
+
+    def _learn_echo(self) -> bool | None:
+        """By a request that cannot be mistaken for its echo; where nobody answers nothing is learnt: None."""
+        for _ in range(_LEARNING_TRIES):
+            self._link.hearing.drop_input()
+            try:
+                self._link.learn_echo()
+            except TransportClosed:
+                raise
+            except LineError:
+                if self._link.echoes is None:
+                    continue
+            break
+        return self._link.echoes
+
+    def end(self) -> None:
+        """The next one may be given more time again."""
+        self._link.patient = True
+
+    def frame_bytes(self, data: bytes) -> int:
+        """How many bytes carry these characters, one way."""
+        return self._link.codec.answer_bytes(Loopback(data))
+
+    def listen_until(self, moment: float) -> None:
+        """Wait until a moment of the transport's clock, and look at whatever comes unasked."""
+        self._link.hearing.listen_until(moment)
+
+    def ready(self) -> None:
+        """Look at what lies in the input."""
+        self._link.hearing.drop_input()
+        self._seen.clear()
+
+    def _try(self, data: bytes) -> str | None:
+        link, request = self._link, Loopback(data)
+        heard, echoes = link.counters.bytes_heard, link.counters.echoes
+        try:
+            link.try_once(request)
+            if link.echoes is None:  # was it an answer or an echo?
+                return None if self._learn_echo() is False else "timeout"
+        except PlcRefused:  # or a late answer of one character, which looks the same
+            return "stale" if any(len(data) == 1 for data in self.unanswered) else "refused"
+        except TransportClosed:
+            raise
+        except (TransportError, FrameError):
+            echo_bytes = link.codec.answer_bytes(request) * (link.counters.echoes - echoes)
+            return self._worst_heard(link.counters.bytes_heard - heard - echo_bytes)
+        return None
+
+    def _worst_heard(self, heard_bytes: int) -> str:
+        """What an exchange without an answer counts as."""
+        for kind in _WORST_FIRST:
+            if kind in self._seen:
+                return kind
+        if heard_bytes <= 0:
+            return "timeout"
+        self._hear_noise(heard_bytes, b"")  # the beginning of a frame
+        return "garbled"
+
+    # --- what is heard beside the answers ------------------------------------------------------------
+
+    def _on_stray(self, frame: Frame) -> None:
+        heard = self._heard
+        if frame.station != self._link.station:
+            heard.foreign[frame.station] = heard.foreign.get(frame.station, 0) + 1
+            self._seen.add("mismatch")
+        elif frame.command != Command.LOOPBACK or frame.data in self._earlier:
+            if frame.command == Command.LOOPBACK and frame.data == self._answered:
+                heard.twice += 1
+            else:
+                heard.late += 1
+                heard.late_s = max(heard.late_s, self._link.hearing.late_s)
+            self._seen.add("stale")
+        else:
+            self._seen.add("mismatch")
+
+    def _on_bad_bytes(self, error: FrameError) -> None:
+        self._seen.add("checksum" if error.checksum else "garbled")
+        self._hear_noise(len(error.raw), error.raw)

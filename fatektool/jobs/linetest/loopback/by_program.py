@@ -1,0 +1,114 @@
+"""The exchange with a ladder program of one's own, which sends back each frame that it gets.
+
+Such a frame has no station, no command and no checksum. So an answer is known by its text alone, and nothing
+can be asked by which the echo of a two-wire line would be known: an echo passes for an answer. It comes
+sooner than any answer could, which the diagnosis tells (``raw_rules``).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from fatektool.errors import TransportTimeout
+from fatektool.jobs.linetest.loopback.exchange import Exchanger
+
+if TYPE_CHECKING:
+    from fatektool.exchange.link import Link
+    from fatektool.jobs.linetest.loopback.result import Heard
+    from fatektool.jobs.linetest.raw_frame import RawFrame
+
+_READ_BYTES: Final = 4096
+_MOST_KEPT: Final = 1 << 14
+"""Of a line that babbles on while an answer is waited for, the last bytes are looked at."""
+
+
+class RawExchanger(Exchanger):
+    """Texts in frames of the ladder's author, once each.
+
+    Args:
+        link: whose line, time-out and speed are used; nothing is said in its protocol.
+        heard: is told what is heard beside the answers.
+        frame: start and end code.
+    """
+
+    echoes = None
+    bytes_heard = 0
+
+    def __init__(self, link: Link, heard: Heard, frame: RawFrame) -> None:
+        super().__init__(link, heard)
+        self.characters = frame.characters(link.line.data_bits)
+        self._frame = frame
+        self._transport = link.transport
+
+    def begin(self) -> None:
+        """Nothing can be learnt of the line before the first exchange."""
+
+    def end(self) -> None:
+        """Nothing was set."""
+
+    def frame_bytes(self, data: bytes) -> int:
+        """How many bytes carry these characters, one way."""
+        return len(self._frame.wrap(data))
+
+    def listen_until(self, moment: float) -> None:
+        """Wait until a moment of the transport's clock, and look at whatever comes unasked."""
+        self._overhear(self._receive(moment))
+
+    def ready(self) -> None:
+        """Look at what lies in the input."""
+        found = self._transport.drain()
+        self.bytes_heard += len(found)
+        self._overhear(found)
+
+    def _try(self, data: bytes) -> str | None:
+        wanted = self._frame.wrap(data)
+        try:
+            self._transport.write(wanted)
+        except TransportTimeout:
+            return "timeout"
+        wire_s = 2 * len(wanted) * self._link.byte_time_s
+        got = self._receive(self._transport.clock() + wire_s + self._link.timeout_s, wanted)
+        before, found, behind = got.partition(wanted)
+        if not found:
+            kind = self._kind_of(got, len(wanted))
+            self._overhear(got)
+            return kind
+        self._overhear(before)
+        self._answered = data
+        self._overhear(behind)
+        return None
+
+    def _receive(self, moment: float, wanted: bytes | None = None) -> bytes:
+        """What comes until then, or until the frame that is wanted is there."""
+        got = b""
+        while (wanted is None or wanted not in got) and (rest := moment - self._transport.clock()) > 0:
+            try:
+                data = self._transport.read(_READ_BYTES, rest)
+            except TransportTimeout:
+                continue
+            self.bytes_heard += len(data)
+            got = (got + data)[-_MOST_KEPT:]
+        return got
+
+    def _kind_of(self, got: bytes, size: int) -> str:
+        """What an exchange without its answer counts as."""
+        if not got:
+            return "timeout"
+        if any(self._frame.wrap(text) in got for text in self._earlier):
+            return "stale"
+        return "mismatch" if self._frame.holds_frame(got, size) else "garbled"
+
+    def _overhear(self, found: bytes) -> None:
+        """Look at bytes that are not the answer waited for."""
+        for text in self.unanswered:
+            found, late = self._without(found, text)
+            self._heard.late += late
+        if self._answered is not None:
+            found, twice = self._without(found, self._answered)
+            self._heard.twice += twice
+        self._hear_noise(len(found), found)
+
+    def _without(self, found: bytes, text: bytes) -> tuple[bytes, int]:
+        """The bytes without the frame of this text, and 1 if it was there."""
+        before, there, behind = found.partition(self._frame.wrap(text))
+        return before + behind, len(there) and 1

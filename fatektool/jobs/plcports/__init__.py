@@ -1,0 +1,1 @@
+"""The PLC's own communication ports and tables, read and written."""

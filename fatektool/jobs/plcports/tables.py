@@ -1,0 +1,148 @@
+"""Reading a communication table out of a PLC, and putting one in.
+
+Putting one in goes the way of ``snapshot apply``: read what is there, save it as a safety snapshot, ask,
+write only what differs, read back. Cut off half way, the same again writes what is left. In RUN an
+instruction may use the table while it is half old and half new.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from fatektool.errors import DataError, PlcError, UsageError
+from fatektool.jobs.elements.reads import named
+from fatektool.jobs.elements.selection import Item
+from fatektool.jobs.elements.writes import NotTaken, write_planned
+from fatektool.jobs.plcports.ports import read_words, require_register
+from fatektool.jobs.snapshots.snapshot import Snapshot, raw_of, take_snapshot
+from fatektool.jobs.snapshots.spec import SpecItem
+from fatektool.plcports.tables import Table, parse_table, table_words
+from fatektool.protocol.elements import Element
+from fatektool.protocol.values import ValueType
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fatektool.client import Plc
+    from fatektool.plcports.kinds import TableKind
+
+_READINGS: Final = 3
+
+
+def parse_start(text: str, operand: str) -> Element:
+    """Read operand SR or WR as people write it.
+
+    Raises:
+        UsageError: it is no register.
+    """
+    element = Element.parse(text)
+    require_register(element, operand)
+    return element
+
+
+def read_table(plc: Plc, start: Element, kind: TableKind) -> Table:
+    """Read a table.
+
+    Args:
+        plc: the PLC.
+        start: operand SR.
+        kind: which instruction and mode it is for; the words do not say.
+
+    Raises:
+        UsageError: no register.
+        PlcError: the PLC refused a register.
+        DataError: its length changes from one reading to the next.
+        LineError: no answer.
+    """
+    require_register(start, "SR")
+    words = read_words(plc, start, kind.head_words)
+    for _ in range(_READINGS):
+        count = table_words(kind, words)
+        if count == len(words):
+            return parse_table(kind, words)
+        words = read_words(plc, start, count)
+        if table_words(kind, words) == count:
+            return parse_table(kind, words)
+    raise DataError(
+        f"the table at {start} changes its length while it is read: expected the same {_READINGS} times",
+        hint="STOP the PLC, or read it again",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """A register that will be written: what it holds, and what it shall hold."""
+
+    element: Element
+    before: int
+    after: int
+
+
+@dataclass(frozen=True, slots=True)
+class WritePlan:
+    """What will be written.
+
+    Attributes:
+        present: the registers of the table as they are now.
+        changes: those that do not hold what they shall.
+        same: how many do already.
+    """
+
+    present: Snapshot
+    changes: tuple[Change, ...]
+    same: int
+
+
+def plan_write(plc: Plc, start: Element, words: Sequence[int]) -> WritePlan:
+    """Read what is there now and find what differs. Changes nothing.
+
+    Args:
+        plc: the PLC.
+        start: operand SR.
+        words: what shall be there.
+
+    Raises:
+        UsageError: no register, or the words go past the last one.
+        PlcError: the PLC refused a register.
+        LineError: no answer.
+    """
+    require_register(start, "SR")
+    if start.address + len(words) - 1 > start.kind.last:
+        raise UsageError(f"{len(words)} registers from {start} go past {start.symbol}{start.kind.last}")
+    elements = [start.after(place) for place in range(len(words))]
+    items = [SpecItem(Item(str(element), element, ValueType.HEX)) for element in elements]
+    present = take_snapshot(plc, items)
+    if present.errors:
+        said = next(iter(present.errors.values()))
+        raise PlcError(
+            f"the PLC refused {named(present.errors)}: {said}", hint="choose another place for the table"
+        )
+    now = (raw for _, raw in raw_of(present).values())
+    changes = tuple(
+        Change(element, before, after)
+        for element, before, after in zip(elements, now, words, strict=True)
+        if before is not None and before != after
+    )
+    return WritePlan(present, changes, len(words) - len(changes))
+
+
+def write_plan(plc: Plc, plan: WritePlan, safety: str | None) -> list[NotTaken]:
+    """Write what differs and read it back; give what did not take.
+
+    Args:
+        plc: the PLC.
+        plan: of this PLC, just now.
+        safety: where the present words lie, for messages.
+
+    Raises:
+        LineError: no answer, and nothing was written.
+        RestoreIncomplete: the line failed on the way.
+    """
+    return write_planned(
+        plc,
+        [(change.element, change.after) for change in plan.changes],
+        safety,
+        failed="the table was not written whole",
+        values="words",
+    )

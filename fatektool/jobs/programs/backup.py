@@ -1,0 +1,65 @@
+"""Back up a PLC's program: read twice, header checked, nothing kept that does not hold."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fatektool.files.times import utc
+from fatektool.jobs.programs.reading import Reading, read_program, read_program_twice
+from fatektool.jobs.progress import Progress, no_progress
+from fatektool.program.archive import Backup, Source
+from fatektool.version import __version__
+
+if TYPE_CHECKING:
+    from fatektool.client import Plc
+
+
+def backup(
+    plc: Plc,
+    *,
+    single_pass: bool = False,
+    any_header: bool = False,
+    progress: Progress = no_progress,
+) -> Backup:
+    """Read a PLC's program into a backup. ``save_backup`` writes it to a file.
+
+    Args:
+        plc: the PLC; it may run.
+        single_pass: leave the second, comparing pass out.
+        any_header: keep an image whose header does not hold; it is marked.
+        progress: told of each page.
+
+    Raises:
+        LineError: a page found no answer, or the line has too many errors.
+        PlcRefused: the PLC does not give its program away.
+        DataError: the header does not hold, or two passes differ.
+    """
+
+    def check(reading: Reading) -> None:
+        if not any_header:
+            reading.program.require_header(
+                "run it again; if it stays so, --any-header keeps the image as it is, marked as such"
+            )
+
+    if single_pass:
+        reading = read_program(plc, progress=progress)
+        check(reading)
+    else:
+        reading = read_program_twice(plc, progress, after_first=check)
+        check(reading)
+    return backup_of(plc, reading)
+
+
+def backup_of(plc: Plc, reading: Reading) -> Backup:
+    """A program that was read just now as a backup."""
+    return Backup(
+        program=reading.program,
+        created=utc(),
+        tool=f"fatektool {__version__}",
+        source=Source(plc.target, plc.link.station, plc.link.codec.name, plc.link.transport.line),
+        plc={
+            "status": reading.status.flags.document(),
+            "system": reading.status.system.document(),
+        },
+        passes=reading.passes,
+    )

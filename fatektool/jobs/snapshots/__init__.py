@@ -1,0 +1,1 @@
+"""Snapshots: a PLC's data at one time, as files, compared and written back."""

@@ -1,0 +1,196 @@
+"""Communication tables: what stands from operand SR on, as words and as rows.
+
+FBs link paper, sections 13.1.2 (CLINK, FUN151) and 13.2.2 (M-BUS, FUN150)::
+
+    md0   count                   7 words a row ...              data of CPU link stations
+    md3   count                   7 words a row ...              high-speed link, port 2 alone
+    mbus  A550H  07H|count        7 words a row ...  reserved    data of Modbus slaves
+    md1   mode   start|end code   length   a byte a word ...     send, perhaps receive: any protocol
+    md2   mode   start|end code   length   a byte a word ...     receive, perhaps reply: any protocol
+
+Nothing of a table is lost: high bytes that the PLC does not take, reserved words and codes that no paper
+lists are kept, so that words -> table -> words is the identity. What is wrong with a table, ``faults`` tells.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from fatektool.errors import DataError
+from fatektool.plcports.checks import check_clink, check_high_speed, check_mbus
+from fatektool.plcports.kinds import TableKind, misplaced
+from fatektool.plcports.messages import MAX_MESSAGE, MessageTable
+from fatektool.plcports.operands import require_range
+from fatektool.plcports.results import Fault
+from fatektool.plcports.rows import ROW_WORDS, SharedBlock, Transaction
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fatektool.protocol.elements import Element
+
+
+MBUS_MARK: Final = 0xA550
+_NO_ROWS: Final = Fault(None, None, "the table has no transactions")
+
+
+@dataclass(frozen=True, slots=True)
+class ClinkTable:
+    """MD0.
+
+    Attributes:
+        rows: 0 to 255 transactions.
+        count_high: the high byte of the count, which the PLC does not take.
+    """
+
+    rows: tuple[Transaction, ...]
+    count_high: int = 0
+
+    def __post_init__(self) -> None:
+        _require_count(len(self.rows), self.count_high)
+
+    def to_words(self) -> tuple[int, ...]:
+        """The table as the registers hold it from SR on."""
+        return self.count_high << 8 | len(self.rows), *(word for row in self.rows for word in row.to_words())
+
+    def faults(self) -> list[Fault]:
+        """What the paper does not allow."""
+        found = [fault for number, row in enumerate(self.rows) for fault in check_clink(number, row)]
+        return found if self.rows else [_NO_ROWS]
+
+
+@dataclass(frozen=True, slots=True)
+class HighSpeedTable:
+    """MD3.
+
+    Attributes:
+        rows: 0 to 255 blocks.
+        count_high: the high byte of the count, which the PLC does not take.
+    """
+
+    rows: tuple[SharedBlock, ...]
+    count_high: int = 0
+
+    def __post_init__(self) -> None:
+        _require_count(len(self.rows), self.count_high)
+
+    def to_words(self) -> tuple[int, ...]:
+        """The table as the registers hold it from SR on."""
+        return self.count_high << 8 | len(self.rows), *(word for row in self.rows for word in row.to_words())
+
+    def faults(self) -> list[Fault]:
+        """What the paper does not allow."""
+        found = [fault for number, row in enumerate(self.rows) for fault in check_high_speed(number, row)]
+        return found if self.rows else [_NO_ROWS]
+
+
+@dataclass(frozen=True, slots=True)
+class MbusTable:
+    """M-BUS.
+
+    Attributes:
+        rows: 0 to 255 transactions.
+        mark: SR+0, A550H in a valid table.
+        row_words: the high byte of SR+1, 7 in a valid table.
+        reserved: the word behind the last row; None to leave it as it is.
+    """
+
+    rows: tuple[Transaction, ...]
+    mark: int = MBUS_MARK
+    row_words: int = ROW_WORDS
+    reserved: int | None = None
+
+    def __post_init__(self) -> None:
+        _require_count(len(self.rows), self.row_words)
+        require_range("mark", self.mark, 0xFFFF)
+        require_range("reserved", self.reserved or 0, 0xFFFF)
+
+    def to_words(self) -> tuple[int, ...]:
+        """The table as the registers hold it from SR on."""
+        words = [self.mark, self.row_words << 8 | len(self.rows)]
+        words += [word for row in self.rows for word in row.to_words()]
+        return tuple(words) if self.reserved is None else (*words, self.reserved)
+
+    def faults(self) -> list[Fault]:
+        """What the paper does not allow."""
+        found = []
+        if self.mark != MBUS_MARK:
+            found.append(Fault(None, 8, f"SR+0: expected A550, got {self.mark:04X}"))
+        if self.row_words != ROW_WORDS:
+            found.append(Fault(None, 8, f"SR+1: expected a high byte of 07, got {self.row_words:02X}"))
+        found += [fault for number, row in enumerate(self.rows) for fault in check_mbus(number, row)]
+        return found if self.rows else [*found, _NO_ROWS]
+
+
+Table = ClinkTable | HighSpeedTable | MbusTable | MessageTable
+
+
+def kind_of(table: Table) -> TableKind:
+    """The instruction and mode that a table is for."""
+    match table:
+        case ClinkTable():
+            return TableKind.MD0
+        case HighSpeedTable():
+            return TableKind.MD3
+        case MbusTable():
+            return TableKind.MBUS
+        case MessageTable(receiver=receiver):
+            return TableKind.MD2 if receiver else TableKind.MD1
+
+
+def table_words(kind: TableKind, head: Sequence[int]) -> int:
+    """How many words a table takes, the word that M-BUS reserves among them.
+
+    Args:
+        kind: of the table.
+        head: its first ``kind.head_words`` words, or more.
+    """
+    match kind:
+        case TableKind.MD0 | TableKind.MD3:
+            return 1 + ROW_WORDS * (head[0] & 0xFF)
+        case TableKind.MBUS:
+            return 2 + ROW_WORDS * (head[1] & 0xFF) + 1
+        case _:
+            return 3 + min(head[2], MAX_MESSAGE)
+
+
+def parse_table(kind: TableKind, words: Sequence[int]) -> Table:
+    """Read a table from the words that it takes.
+
+    Raises:
+        DataError: too few or too many words.
+    """
+    count = table_words(kind, words) if len(words) >= kind.head_words else kind.head_words
+    if len(words) != count:
+        raise DataError(f"a table of {kind.value}: expected {count} words, got {len(words)}")
+    match kind:
+        case TableKind.MD0:
+            return ClinkTable(tuple(map(Transaction.parse, _rows(words[1:]))), words[0] >> 8)
+        case TableKind.MD3:
+            return HighSpeedTable(tuple(map(SharedBlock.parse, _rows(words[1:]))), words[0] >> 8)
+        case TableKind.MBUS:
+            rows = tuple(map(Transaction.parse, _rows(words[2:-1])))
+            return MbusTable(rows, words[0], words[1] >> 8, words[-1])
+        case _:
+            return MessageTable.parse(words, receiver=kind is TableKind.MD2)
+
+
+def place_faults(start: Element, count: int) -> list[Fault]:
+    """What is wrong with the place of a table.
+
+    Args:
+        start: operand SR.
+        count: how many words the table takes.
+    """
+    reason = misplaced("SR", start, count)
+    return [] if reason is None else [Fault(None, None, reason)]
+
+
+def _rows(words: Sequence[int]) -> list[Sequence[int]]:
+    return [words[start : start + ROW_WORDS] for start in range(0, len(words), ROW_WORDS)]
+
+
+def _require_count(rows: int, high: int) -> None:
+    require_range("number of transactions", rows, 255)
+    require_range("high byte of the number of transactions", high, 255)

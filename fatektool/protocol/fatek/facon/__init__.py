@@ -1,0 +1,1 @@
+"""The FACON protocol: ASCII frames with an LRC."""

@@ -1,0 +1,1 @@
+"""The M-series protocol: binary frames with a CRC."""

@@ -1,0 +1,223 @@
+r"""M-series binary frames (M-series paper, section 1).
+
+::
+
+    51 request, 52 answer · 10 · length(2, high byte first) · payload(length) · CRC(2, low byte first) · 55 AA
+
+    payload of a request  station(1) · command(1) · data
+    payload of an answer  station(1) · command(1) · error(1) · data, but for 4E, which has no error byte
+
+The CRC is CRC-16/MODBUS over length and payload.
+
+The decoder's strategy: hunt for 51 10 or 52 10 and a length that a frame can have, then wait for as many
+bytes. 55 AA may stand in a payload, and so may a whole frame: nothing but the length says where a frame ends.
+If what came then is no frame, its header was none: it is dropped up to the next that could be one, so a good
+frame behind a bad one is found, even one that the bad one's length had covered. The same is done with a frame
+that has not come whole when its time is over (``expect_no_more``).
+
+The tables of the paper allow 262 bytes of payload at most: 45 with 256 discretes. How long an answer to 53 is
+nobody says, so up to 453 are taken, 64 items of 7 bytes and 5 before them, and a length that lies makes no
+one wait for more.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Final, TypeVar
+
+from fatektool.errors import FrameError, UsageError
+from fatektool.protocol.codec import Frame, require_commands
+from fatektool.protocol.fatek.commands import FatekCommands
+from fatektool.protocol.fatek.mseries import data as mseries_data
+from fatektool.protocol.fatek.mseries.crc import crc_bytes
+
+if TYPE_CHECKING:
+    from fatektool.protocol.commands import Command, Request
+
+A = TypeVar("A")
+
+QUERY: Final = 0x51
+RESPONSE: Final = 0x52
+ID: Final = 0x10
+TERMINATOR: Final = b"\x55\xaa"
+FRAMING_BYTES: Final = 8  # header, ID, length, CRC, terminator
+MIN_PAYLOAD: Final = 2  # station, command
+MAX_PAYLOAD: Final = 5 + 64 * 7
+MAX_FRAME: Final = FRAMING_BYTES + MAX_PAYLOAD
+LAST_STATION: Final = 0xFF
+_MAX_BUFFER: Final = 1 << 16
+
+_BEGINNING: Final = re.compile(
+    rb"[\x51\x52](?:\Z|\x10(?:\Z|\x00(?:\Z|[\x02-\xFF])|\x01(?:\Z|[\x00-\x%02X])))" % (MAX_PAYLOAD & 0xFF)
+)
+"""What may be the beginning of a frame, or all of it that has come so far."""
+
+
+def frame_bytes(header: int, station: int, command: int, data: bytes) -> bytes:
+    """One frame.
+
+    Args:
+        header: QUERY or RESPONSE.
+        station: 0 to 255; 0 is everyone, and nobody answers; 255 is in no paper, and is used.
+        command: the command's code.
+        data: 0 to 451 bytes.
+
+    Raises:
+        UsageError: a station or data that no frame can carry.
+    """
+    if not 0 <= station <= LAST_STATION:
+        raise UsageError(f"station: expected 0 to {LAST_STATION}, got {station}")
+    size = MIN_PAYLOAD + len(data)
+    if size > MAX_PAYLOAD:
+        raise UsageError(f"frame data: expected at most {MAX_PAYLOAD - MIN_PAYLOAD} bytes, got {len(data)}")
+    checked = b"%b%c%c%b" % (size.to_bytes(2, "big"), station, command, data)
+    return b"%c%c%b%b%b" % (header, ID, checked, crc_bytes(checked), TERMINATOR)
+
+
+class MseriesDecoder:
+    """Cuts M-series frames out of a stream, whatever its chunks."""
+
+    def __init__(self) -> None:
+        self._buffer = bytearray()
+        self._all_came = False
+
+    def feed(self, data: bytes) -> None:
+        """Take bytes from the wire; of more than 64 KiB not asked for, the oldest are forgotten."""
+        self._all_came = False
+        self._buffer += data
+        if len(self._buffer) > _MAX_BUFFER:
+            del self._buffer[:-_MAX_BUFFER]
+
+    def clear(self) -> int:
+        """Forget what was fed and not yet given; return how many bytes that was."""
+        left = len(self._buffer)
+        self._buffer.clear()
+        return left
+
+    def expect_no_more(self) -> bool:
+        """Let go of a frame that began and does not end, and look at what stands behind its beginning."""
+        self._all_came = bool(self._buffer)
+        return self._all_came
+
+    def next_frame(self) -> Frame | None:
+        """Give the next whole frame, or None if more bytes are needed.
+
+        Raises:
+            FrameError: bytes that are no frame; they are dropped.
+        """
+        buffer = self._buffer
+        if not buffer:
+            return None
+        begins = _BEGINNING.match(buffer)
+        if begins is None:
+            raise FrameError(_no_beginning(buffer), raw=self._take(self._next_beginning(0)))
+        size = FRAMING_BYTES + int.from_bytes(buffer[2:4], "big")
+        if len(buffer) < max(size, FRAMING_BYTES + MIN_PAYLOAD):
+            if not self._all_came:
+                return None
+            raise FrameError("a frame broke off", raw=self._take(self._next_beginning(1)))
+        try:
+            frame = parse_frame(bytes(buffer[:size]))
+        except FrameError as error:
+            drop = self._next_beginning(1)
+            if drop < size or not error.checksum:
+                raise FrameError(error.message, raw=self._take(drop)) from None
+            del buffer[:size]
+            raise
+        del buffer[:size]
+        return frame
+
+    def _next_beginning(self, at: int) -> int:
+        """Where the next frame may begin; the end of all bytes if nowhere."""
+        found = _BEGINNING.search(self._buffer, at)
+        return found.start() if found else len(self._buffer)
+
+    def _take(self, count: int) -> bytes:
+        taken = bytes(self._buffer[:count])
+        del self._buffer[:count]
+        return taken
+
+
+def _no_beginning(buffer: bytearray) -> str:
+    if len(buffer) >= 4 and buffer[0] in {QUERY, RESPONSE} and buffer[1] == ID:
+        size = int.from_bytes(buffer[2:4], "big")
+        return f"length: expected {MIN_PAYLOAD} to {MAX_PAYLOAD}, got {size}"
+    return "noise outside a frame"
+
+
+def parse_frame(raw: bytes) -> Frame:
+    """Read one frame from header to terminator.
+
+    Raises:
+        FrameError: a wrong checksum (then ``checksum`` is True), or no frame.
+    """
+    begins = _BEGINNING.match(raw)
+    if begins is None or not FRAMING_BYTES + MIN_PAYLOAD <= len(raw) <= MAX_FRAME:
+        raise FrameError(
+            f"no frame: expected 51 10 or 52 10 and {FRAMING_BYTES + MIN_PAYLOAD} to {MAX_FRAME} bytes, "
+            f"got {len(raw)}",
+            raw=raw,
+        )
+    size = int.from_bytes(raw[2:4], "big")
+    if len(raw) != FRAMING_BYTES + size:
+        raise FrameError(f"length: {size} says {FRAMING_BYTES + size} bytes, got {len(raw)}", raw=raw)
+    if raw[-2:] != TERMINATOR:
+        got = raw[-2:].hex(" ").upper()
+        raise FrameError(f"no end where the length says: expected 55 AA, got {got}", raw=raw)
+    expected = crc_bytes(raw[2:-4])
+    if raw[-4:-2] != expected:
+        got = raw[-4:-2].hex(" ").upper()
+        raise FrameError(f"checksum: expected {expected.hex(' ').upper()}, got {got}", raw=raw, checksum=True)
+    return Frame(raw[4], raw[5], raw[6:-4], raw)
+
+
+class MseriesCodec(FatekCommands):
+    """M-series binary as a ``Codec``."""
+
+    name: Final = "mseries"
+    commands: Final[frozenset[Command]] = mseries_data.COMMANDS
+    loopback_alphabet: Final = bytes(range(256))
+    data_bits: Final = 8
+    default_tcp_port: Final = None
+
+    def decoder(self) -> MseriesDecoder:
+        """A new decoder for one stream."""
+        return MseriesDecoder()
+
+    def encode(self, station: int, request: Request[A], number: int = 0) -> bytes:
+        """The request as one frame for this station."""
+        del number  # a frame has no room for it
+        if request.command not in self.commands:
+            require_commands(self, request.command)
+        return frame_bytes(QUERY, station, request.command, mseries_data.request_data(request))
+
+    def parse_request(self, frame: Frame) -> Request[object]:
+        """The request that a frame holds."""
+        if frame.raw[0] != QUERY:
+            raise FrameError("an answer (52), expected a request (51)", raw=frame.raw)
+        return mseries_data.parse_request(frame.command, frame.data)
+
+    def parse_answer(self, request: Request[A], frame: Frame) -> A:
+        """What a frame answers to this request."""
+        if frame.raw[0] != RESPONSE:
+            raise FrameError("a request (51), expected an answer (52)", raw=frame.raw)
+        return mseries_data.parse_answer(request, frame.data)
+
+    def encode_answer(self, station: int, request: Request[A], answer: A) -> bytes:
+        """The frame in which a PLC gives this answer."""
+        return frame_bytes(RESPONSE, station, request.command, mseries_data.answer_data(request, answer))
+
+    def request_bytes(self, request: Request[A]) -> int:
+        """Length of the frame that asks this, in bytes."""
+        return FRAMING_BYTES + MIN_PAYLOAD + len(mseries_data.request_data(request))
+
+    def answer_bytes(self, request: Request[A]) -> int:
+        """Length of the frame that answers this request, in bytes; of 53 that of FACON's 64 bytes."""
+        return FRAMING_BYTES + MIN_PAYLOAD + mseries_data.answer_size(request)
+
+    def echo_may_pass(self, request: Request[A]) -> bool:  # noqa: ARG002  # the interface's
+        """False: a request begins with 51, an answer with 52."""
+        return False
+
+
+MSERIES: Final = MseriesCodec()

@@ -1,0 +1,1 @@
+"""Modbus in its three framings, as a protocol for these PLCs."""

@@ -1,0 +1,261 @@
+"""Modbus frames explained: every byte belongs to a field, and every field says what it means.
+
+Requests and answers look alike. Which one a frame is, the direction of a trace says; without it the form, and
+where that fits both, whether this was asked before. An answer to a read does not say where: the request
+before it, if there is one, names its values. Elements are those of the standard map.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, ClassVar, Final, NamedTuple
+
+from fatektool.errors import FrameError
+from fatektool.protocol.explain import Explanation, Field, Role
+from fatektool.protocol.modbus import pdu as modbus_pdu
+from fatektool.protocol.modbus.data import AREAS, MEANINGS
+from fatektool.protocol.modbus.frame import (
+    LAST_STATION,
+    TCP_HEADER,
+    AsciiDecoder,
+    RtuDecoder,
+    TcpDecoder,
+)
+from fatektool.protocol.modbus.map import STANDARD, Reference
+from fatektool.protocol.modbus.pdu import EXCEPTION, FUNCTION_WORDS, OF_BITS, READS, Pdu
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from fatektool.protocol.codec import Decoder, Frame
+
+_PIECE: Final = 1 << 15
+"""What a decoder is fed at once: it keeps no more than 64 KiB, and a record of a trace may hold more."""
+
+
+class _Part(NamedTuple):
+    """A piece of a PDU: its name, how many bytes it takes, what it says."""
+
+    name: str
+    size: int
+    meaning: str
+
+
+class _Explainer:
+    """Explains a conversation, piece by piece, in the order it was spoken."""
+
+    form: ClassVar[str]
+    binary: ClassVar[bool] = True
+    octet: ClassVar[int] = 1  # bytes on the wire for one of content
+    head: ClassVar[int] = 0  # bytes before the station
+    tail: ClassVar[int] = 0  # bytes behind the PDU
+    decoder: ClassVar[Callable[[], Decoder]]
+
+    def __init__(self) -> None:
+        self._last: dict[tuple[int, int, int], Pdu] = {}
+
+    def explain(self, data: bytes, role: Role = Role.EITHER) -> Iterator[Explanation]:
+        """Explain all frames in a piece of the conversation, and the bytes that are none.
+
+        Args:
+            data: the bytes.
+            role: REQUEST or ANSWER if the direction is known.
+        """
+        decoder = type(self).decoder()
+        for at in range(0, len(data), _PIECE):
+            decoder.feed(data[at : at + _PIECE])
+            yield from self._frames(decoder, role)
+        if decoder.expect_no_more():
+            yield from self._frames(decoder, role)
+
+    def _frames(self, decoder: Decoder, role: Role) -> Iterator[Explanation]:
+        while True:
+            try:
+                frame = decoder.next_frame()
+            except FrameError as error:
+                whole = (Field("bytes", error.raw, error.message),)
+                yield Explanation(Role.BROKEN, error.raw, whole, fault=error.message)
+                continue
+            if frame is None:
+                return
+            yield self._frame(frame, role)
+
+    def _frame(self, frame: Frame, role: Role) -> Explanation:
+        key = (frame.station, frame.command, frame.number)
+        role, said, fault = _understood(frame.data, role, asked=key in self._last)
+        if said is None:
+            parts = [_Part("data", len(frame.data) - 1, "in no form of this function")]
+        elif said.exception:
+            self._last.pop(key, None)
+            meaning = MEANINGS.get(said.exception, "a code that is not listed")
+            parts = [_Part("exception", 1, f"REFUSED: {meaning}")]
+        elif role is Role.ANSWER:
+            parts = _answer_parts(said, self._last.pop(key, None))
+        else:
+            self._last[key] = said
+            parts = _request_parts(said)
+        return Explanation(
+            role,
+            frame.raw,
+            tuple(self._fields(frame, parts)),
+            frame.station,
+            frame.command,
+            True if self.tail else None,
+            fault,
+        )
+
+    def _fields(self, frame: Frame, parts: list[_Part]) -> Iterator[Field]:
+        yield from self.before(frame.raw)
+        function = frame.data[0]
+        words = FUNCTION_WORDS.get(frame.command, "not in the map")
+        refused = ", refused" if function & EXCEPTION else ""
+        at = self.head
+        for part in (
+            _Part("station", 1, self.who(frame.station)),
+            _Part("function", 1, f"{words}{refused}"),
+            *parts,
+        ):
+            end = at + part.size * self.octet
+            if part.size:
+                yield Field(part.name, frame.raw[at:end], part.meaning)
+            at = end
+        yield from self.behind(frame.raw)
+
+    def who(self, station: int) -> str:
+        """A station in words."""
+        if not station:
+            return "all (broadcast), nobody answers"
+        return f"{station}" if station <= LAST_STATION else f"{station}, reserved on serial lines"
+
+    def before(self, raw: bytes) -> Iterator[Field]:
+        """The fields before the station."""
+        del raw
+        yield from ()
+
+    def behind(self, raw: bytes) -> Iterator[Field]:
+        """The fields behind the PDU."""
+        del raw
+        yield from ()
+
+
+class RtuExplainer(_Explainer):
+    """RTU frames."""
+
+    form = "station, function, data, a CRC"
+    tail = 2
+    decoder = RtuDecoder
+
+    def behind(self, raw: bytes) -> Iterator[Field]:
+        """The CRC."""
+        yield Field("CRC", raw[-2:], "right")
+
+
+class AsciiExplainer(_Explainer):
+    """ASCII frames."""
+
+    form = "a colon, hex digits, an LRC, CR LF"
+    binary = False
+    octet = 2
+    head = 1
+    tail = 4
+    decoder = AsciiDecoder
+
+    def before(self, raw: bytes) -> Iterator[Field]:
+        """The colon."""
+        yield Field("start", raw[:1], "begins a frame")
+
+    def behind(self, raw: bytes) -> Iterator[Field]:
+        """The LRC and the end."""
+        yield Field("LRC", raw[-4:-2], "right")
+        yield Field("end", raw[-2:], "CR LF")
+
+
+class TcpExplainer(_Explainer):
+    """TCP frames."""
+
+    form = "a number, 00 00, a length, station, function, data"
+    head = TCP_HEADER - 1
+    decoder = TcpDecoder
+
+    def who(self, station: int) -> str:
+        """A unit in words: 0 and 255 are the device at the address itself, unless a gateway is there."""
+        return f"{station}, the PLC at this address" if station in {0, 255} else f"{station}"
+
+    def before(self, raw: bytes) -> Iterator[Field]:
+        """The header up to the station."""
+        yield Field("number", raw[:2], f"{int.from_bytes(raw[:2], 'big')}; the answer repeats it")
+        yield Field("protocol", raw[2:4], "Modbus")
+        yield Field("length", raw[4:6], f"{int.from_bytes(raw[4:6], 'big')} bytes follow")
+
+
+def _understood(pdu: bytes, role: Role, *, asked: bool) -> tuple[Role, Pdu | None, str | None]:
+    """What a PDU is and says, or what is wrong with it."""
+    found: dict[Role, Pdu] = {}
+    fault = None
+    for kind, parse in ((Role.REQUEST, modbus_pdu.parse_request), (Role.ANSWER, modbus_pdu.parse_answer)):
+        if role in {kind, Role.EITHER}:
+            try:
+                found[kind] = parse(pdu)
+            except FrameError as error:
+                fault = error.message
+    if not found:
+        return role, None, fault
+    first = Role.ANSWER if asked and Role.ANSWER in found else next(iter(found))
+    return first, found[first], None
+
+
+def _request_parts(said: Pdu) -> list[_Part]:
+    function, offset = said.function, said.offset
+    if function in {modbus_pdu.WRITE_COIL, modbus_pdu.WRITE_REGISTER}:
+        return _one_written(said)
+    parts = [_Part("address", 2, f"{_named(function, offset)}, {_reference(function, offset)}")]
+    count = len(said.bits) or len(said.registers) or said.count
+    last = f" to {_named(function, offset + count - 1)}" if count > 1 else ""
+    parts.append(_Part("count", 2, f"{count}: {_named(function, offset)}{last}"))
+    if function in READS:
+        return parts
+    size = (count + 7) // 8 if function in OF_BITS else 2 * count
+    return [*parts, _Part("n", 1, f"{size} bytes"), *_values(said, function, offset)]
+
+
+def _answer_parts(said: Pdu, asked: Pdu | None) -> list[_Part]:
+    function = said.function
+    if function in {modbus_pdu.WRITE_COIL, modbus_pdu.WRITE_REGISTER}:
+        return _one_written(said)
+    if function not in READS:
+        return [
+            _Part("address", 2, f"{_named(function, said.offset)}, {_reference(function, said.offset)}"),
+            _Part("count", 2, f"{said.count} written"),
+        ]
+    size = len(said.bits) // 8 if function in OF_BITS else 2 * len(said.registers)
+    if asked is not None and function in OF_BITS and (asked.count + 7) // 8 == size:
+        said = replace(said, bits=said.bits[: asked.count])
+    return [_Part("n", 1, f"{size} bytes"), *_values(said, function, None if asked is None else asked.offset)]
+
+
+def _one_written(said: Pdu) -> list[_Part]:
+    where = f"{_named(said.function, said.offset)}, {_reference(said.function, said.offset)}"
+    value = ("on" if said.bits[0] else "off") if said.bits else f"{said.registers[0]}"
+    return [_Part("address", 2, where), _Part("value", 2, value)]
+
+
+def _values(said: Pdu, function: int, offset: int | None) -> Iterator[_Part]:
+    """Registers one by one, bits by the byte; without names if it is not known where they are."""
+    for place, value in enumerate(said.registers):
+        name = f"value {place + 1}" if offset is None else _named(function, offset + place)
+        yield _Part(name, 2, f"{value}")
+    for at in range(0, len(said.bits), 8):
+        states = ["on" if bit else "off" for bit in said.bits[at : at + 8]]
+        first = f"{at + 1}" if offset is None else _named(function, offset + at)
+        yield _Part(f"{first} and on", 1, " ".join(states))
+
+
+def _named(function: int, offset: int) -> str:
+    found = STANDARD.element_at(Reference(AREAS[function], offset)) if offset <= 0xFFFF else None
+    if found is None:
+        return f"offset {offset}"
+    return f"{found.element} {found.half}" if found.half else f"{found.element}"
+
+
+def _reference(function: int, offset: int) -> str:
+    return f"{Reference(AREAS[function], offset)}"

@@ -1,0 +1,1 @@
+"""Where clients reach a simulated PLC: TCP, UDP, a pty."""

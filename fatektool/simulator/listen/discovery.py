@@ -1,0 +1,61 @@
+"""A door at which the simulator answers as an Ethernet module does that is looked for by UDP.
+
+What an answer holds at which place is not known. So this one has the length and the two port numbers of a
+real one, and says in words that it is a simulator's.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import selectors
+import socket
+from typing import TYPE_CHECKING
+
+from fatektool.simulator.listen.listeners import address_of, bound
+
+if TYPE_CHECKING:
+    from fatektool.simulator.listen.servers import Server
+
+ANSWER_PORT = 53238
+_REQUESTS = {
+    b"\x13\x0c\x2f\x9b\x77\x70\x89\xaa",
+    b"\x09\x50\x83\x04\x5a\x22\x00\x22",
+}
+_LENGTH = 351
+_PORTS = b"\x01\xf4\x01\xf6"
+_WORDS = b"fatektool simulator"
+ANSWER = _WORDS.ljust(_LENGTH - len(_PORTS), b"\0") + _PORTS
+_READ_BYTES = 2048
+
+
+class DiscoveryDoor:
+    """A UDP socket that answers the two requests, to the port that is known for it.
+
+    Args:
+        server: serves it.
+        host: where it listens.
+        port: 111, as real ones; 0 for a free one.
+        answer_port: to which the answers go.
+    """
+
+    def __init__(self, server: Server, host: str, port: int, answer_port: int) -> None:
+        self._server = server
+        self._answer_port = answer_port
+        self._socket = bound(socket.SOCK_DGRAM, "discovery", host, port)
+        self.address = address_of("discovery", self._socket)
+        server.selector.register(self._socket, selectors.EVENT_READ, self._on_ready)
+
+    def _on_ready(self, _events: int) -> None:
+        with contextlib.suppress(OSError):
+            data, sender = self._socket.recvfrom(_READ_BYTES)
+            if data in _REQUESTS and self._server.simulation.powered:
+                self._socket.sendto(ANSWER, (sender[0], self._answer_port, *sender[2:]))
+
+    def lose_power(self) -> None:
+        """Nothing is held."""
+
+    def close(self) -> None:
+        """Close the socket; twice is fine."""
+        if self._socket.fileno() >= 0:
+            self._server.selector.unregister(self._socket)
+            self._socket.close()

@@ -1,0 +1,142 @@
+"""A pseudo terminal as a door: to its client it is a serial port. POSIX only.
+
+::
+
+    client ── link ──> /dev/pts/7 (slave end) ═══ master end ── line ──> PLCs
+
+The door keeps the slave end open itself, so that a client that closes the port hangs nothing up and
+the next one finds it as it was. When answers fill the terminal's buffer and nobody reads them, the next
+request drops them, as a serial port overruns: whoever asks again has given up what came before.
+
+The link is a symbolic link in a place that the user names; see ``pty_link``.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import selectors
+from typing import TYPE_CHECKING
+
+from fatektool.errors import LineError, UsageError
+from fatektool.simulator.listen.pty_symlink import LOCKS_SUPPORTED, PtyLink
+
+try:
+    import pty
+    import termios
+    import tty
+except ImportError:  # Windows has none of them
+    PTY_SUPPORTED = False
+else:
+    PTY_SUPPORTED = LOCKS_SUPPORTED
+
+if TYPE_CHECKING:
+    from fatektool.simulator.listen.listeners import Line
+    from fatektool.simulator.listen.servers import Server
+
+_READ_BYTES = 65536
+_OUTPUT_SPEED = 5
+"""The place of a terminal's speed among its attributes: the client's setting, seen from this end."""
+
+
+class PtyDoor:
+    """A pseudo terminal behind a link.
+
+    Args:
+        server: whose reactor watches it.
+        link: the path that clients open; it is made, and removed at the end.
+        baud: the only speed that is understood, as on a real line; None for any.
+    """
+
+    def __init__(self, server: Server, link: str | os.PathLike[str], baud: int | None = None) -> None:
+        if not PTY_SUPPORTED:
+            raise LineError(
+                f"cannot open {os.fspath(link)}: there are no pseudo terminals here", hint="use TCP"
+            )
+        self._speed = None if baud is None else _speed(baud)
+        self._server = server
+        self._closed = False
+        self._link = PtyLink(link)
+        self.address = str(self._link.path)
+        try:
+            self._master, self._slave = pty.openpty()
+        except OSError as error:
+            self._link.remove()
+            raise LineError(f"cannot open a pseudo terminal: {error.strerror}") from error
+        try:
+            tty.setraw(self._slave)
+            self._link.point_to(os.ttyname(self._slave))
+        except LineError:
+            self._close_ends()
+            raise
+        for end in (self._master, self._slave):
+            os.set_blocking(end, False)
+        self._line: Line = server.simulation.line()
+        self._backlog = bytearray()
+        self._events = selectors.EVENT_READ
+        server.selector.register(self._master, self._events, self._on_ready)
+
+    def _on_ready(self, events: int) -> None:
+        if events & selectors.EVENT_WRITE:
+            self._write()
+        if events & selectors.EVENT_READ:
+            with contextlib.suppress(BlockingIOError, InterruptedError):
+                data = os.read(self._master, _READ_BYTES)
+                if self._backlog:
+                    self._drop_unread()
+                if self._speed not in {None, termios.tcgetattr(self._master)[_OUTPUT_SPEED]}:
+                    return  # at another speed there is nothing but framing errors
+                self._server.dispatch(self._line.receive(data, self._server.now()), self._deliver)
+
+    def _deliver(self, data: bytes) -> None:
+        if not self._closed:
+            self._backlog += data
+            self._write()
+
+    def _write(self) -> None:
+        with contextlib.suppress(BlockingIOError, InterruptedError):
+            del self._backlog[: os.write(self._master, self._backlog)]
+        events = selectors.EVENT_READ | (selectors.EVENT_WRITE if self._backlog else 0)
+        if events != self._events:
+            self._events = events
+            self._server.selector.modify(self._master, events, self._on_ready)
+
+    def _drop_unread(self) -> None:
+        # By reading, as flushing leaves what the kernel has not yet handed on to the terminal. A client
+        # may have set the terminal to give nothing instead of an error when there is no more.
+        self._backlog.clear()
+        with contextlib.suppress(BlockingIOError, InterruptedError):
+            while os.read(self._slave, _READ_BYTES):
+                pass
+
+    def lose_power(self) -> None:
+        """Send no more; a port has no connection to close."""
+        self._backlog.clear()
+
+    def close(self) -> None:
+        """Remove the link and close both ends; twice is fine."""
+        if self._closed:
+            return
+        self._closed = True
+        self._server.selector.unregister(self._master)
+        self._close_ends()
+
+    def _close_ends(self) -> None:
+        # The link first: while the terminal lives its number cannot be another's.
+        self._link.remove()
+        os.close(self._master)
+        os.close(self._slave)
+
+
+def _speed(baud: int) -> int:
+    """The system's name of a speed.
+
+    Raises:
+        UsageError: it has none.
+    """
+    speed = getattr(termios, f"B{baud}", None)
+    if speed is None:
+        raise UsageError(
+            f"--strict-baud: this system has no {baud} bits a second for a terminal", hint="such as 9600"
+        )
+    return int(speed)

@@ -1,0 +1,24 @@
+"""The demonstration program of a model, in the form that its family keeps programs in."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fatektool.simulator.program.facon_program import demonstration_program
+from fatektool.simulator.program.fbs_program import fbs_program
+
+if TYPE_CHECKING:
+    from fatektool.simulator.models import Model
+
+
+def program_of(model: Model, *, seed: int = 1, swapped: bool = False) -> list[bytes]:
+    """Pages of 128 bytes, as many as the model has.
+
+    Args:
+        model: what the PLC is.
+        seed: which program.
+        swapped: exchange the bytes of each word of an FBs image.
+    """
+    if model.image is not None and model.has_fbs_image:
+        return fbs_program(model.image, model.page_count, seed=seed, swapped=swapped)
+    return demonstration_program(model.ladder_words, seed=seed)

@@ -1,0 +1,1 @@
+"""A simulated PLC as a Modbus slave."""

@@ -1,0 +1,1 @@
+"""A simulated PLC that speaks the M-series protocol."""

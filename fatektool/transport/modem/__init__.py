@@ -1,0 +1,1 @@
+"""A modem between this computer and the PLC: the call, its commands, its results."""

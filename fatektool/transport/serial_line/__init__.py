@@ -1,0 +1,1 @@
+"""Serial ports: opening, settings, errors in the project's words."""

@@ -1,0 +1,164 @@
+"""Simulated PLCs, command lines, processes and terminals for the tests of the command line."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from contextlib import contextmanager
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from jsonschema import Draft202012Validator
+
+from fatektool.cli import run
+from fatektool.program.archive import save_backup
+from fatektool.program.image import Program
+from fatektool.simulator.build import Simulation, build_simulation
+from fatektool.simulator.listen.servers import Server
+from tests.hurry import hurried
+from tests.program.samples import backup, program
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    import pytest
+
+OLD, NEW = program(400, seed=1), program(400, seed=2)
+PAGES = 8
+COMMAND = [sys.executable, "-m", "fatektool"]
+
+
+class Done(NamedTuple):
+    """A command that has ended."""
+
+    code: int
+    out: str
+    err: str
+
+    def document(self, schema: str) -> Any:
+        """The one JSON document on stdout, checked."""
+        found = json.loads(self.out, parse_constant=lambda text: 1 / 0)  # noqa: ARG005  # no NaN
+        check(found, schema)
+        return found
+
+
+def schema_text(name: str) -> str:
+    return (files("fatektool") / "schemas" / f"{name}.json").read_text(encoding="utf-8")
+
+
+def check(document: Any, schema: str) -> None:
+    """Check a document against the schema that its name calls for."""
+    assert document["schema"].startswith(f"fatektool.{schema}/")
+    Draft202012Validator(json.loads(schema_text(schema))).validate(document)
+
+
+class Cli:
+    """Runs commands in this process."""
+
+    def __init__(self, capsys: pytest.CaptureFixture[str]) -> None:
+        self._capsys = capsys
+
+    def __call__(self, *words: object) -> Done:
+        self._capsys.readouterr()
+        code = run([str(word) for word in words])
+        return Done(code, *self._capsys.readouterr())
+
+
+class Press:
+    """A simulated PLC whose memory lies in a file, and backups beside it."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.state = folder / "plc.state"
+        self.target = f"sim:{self.state}"
+        build_simulation(ladder_words=400, program=OLD.pages, state=self.state)
+        self.old = self.file("old.json", OLD)
+        self.new = self.file("new.json", NEW)
+
+    def file(self, name: str, image: Program) -> Path:
+        path = self.folder / name
+        save_backup(backup(image, target=self.target), path)
+        return path
+
+    def set(self, *flags: str) -> None:
+        simulation = build_simulation(state=self.state)
+        for flag in flags:
+            setattr(simulation.plcs[1], flag, True)
+        simulation.save_if_changed()
+
+    @property
+    def program(self) -> Program:
+        return Program(400, tuple(build_simulation(state=self.state).plcs[1].pages))
+
+    @property
+    def running(self) -> bool:
+        return build_simulation(state=self.state).plcs[1].running
+
+    @property
+    def safety(self) -> list[Path]:
+        return sorted(self.folder.glob("*.safety-*"))
+
+
+class Door(NamedTuple):
+    """A PLC that is served over TCP by a thread of this process; a client in it waits for no real time."""
+
+    target: str
+    simulation: Simulation
+
+    @property
+    def pages(self) -> tuple[bytes, ...]:
+        return tuple(self.simulation.plcs[1].pages)
+
+
+@contextmanager
+def served(image: Program = OLD, **options: Any) -> Iterator[Door]:
+    simulation = build_simulation(ladder_words=image.ladder_words, program=image.pages, **options)
+    server = Server(simulation)
+    door = server.open_tcp()
+    with hurried(server):
+        yield Door(door.address, simulation)
+
+
+def environment(**more: str) -> dict[str, str]:
+    """This process's, and more; ``place`` has taken out what would change how a command talks."""
+    return dict(os.environ) | {"PYTHONIOENCODING": "utf-8"} | more
+
+
+def process(*words: object, redirect: str = "", **more: str) -> Done:
+    """Run a command as a process; ``redirect`` is redirections and pipes behind it."""
+    command: Any = [*COMMAND, *map(str, words)]
+    if redirect:
+        command = ["bash", "-c", f'set -o pipefail; "$@" {redirect}', "bash", *command]
+    done = subprocess.run(
+        command,
+        capture_output=True,
+        text=True,
+        check=False,
+        stdin=subprocess.DEVNULL,
+        env=environment(**more),
+    )
+    return Done(done.returncode, done.stdout, done.stderr)
+
+
+def started(*words: object, **options: Any) -> subprocess.Popen[str]:
+    """Start a command as a process."""
+    return subprocess.Popen(
+        [*COMMAND, *map(str, words)],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=environment(),
+        **options,
+    )
+
+
+def one_line(text: str) -> str:
+    """The only line of stderr: no traceback, no second line."""
+    (line,) = text.splitlines()
+    assert line.startswith("fatektool: ")
+    assert "Traceback" not in text
+    return line

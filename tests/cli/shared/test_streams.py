@@ -1,0 +1,328 @@
+"""Standard streams: pipes, full disks, closed ones. Data on stdout and nothing else."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import resource
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from fatektool.program.archive import Backup, load_backup
+from fatektool.simulator.build import build_simulation
+from tests.cli.running import COMMAND, OLD, Press, environment, one_line, process, started
+
+
+def test_a_backup_to_stdout_is_the_file(press: Press) -> None:
+    process("backup", "x.json", "-p", press.target)
+    filed = Path("x.json").read_bytes()
+    done = process("backup", "-", "-p", press.target)
+    assert done.code == 0
+    assert done.err == ""
+    created = Backup.parse(filed).created.encode(), Backup.parse(done.out.encode()).created.encode()
+    assert done.out.encode() == filed.replace(created[0], created[1])
+    assert process("backup", "-", "-p", press.target, "--json").out.count("\n") == done.out.count("\n")
+    assert not Path("-").exists()
+
+
+def test_a_backup_through_a_pipe(press: Press) -> None:
+    assert process("backup", "-", "-p", press.target, redirect="> piped.json").code == 0
+    assert load_backup(Path("piped.json")).program == OLD
+
+
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize(
+    "words",
+    ["backup - -p sim:", "status -p sim:", "--help", "status -p sim: --json", "schema"],
+)
+def test_a_reader_that_is_gone(words: str, unbuffered: str) -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    done = subprocess.run(
+        [*COMMAND, *words.split()],
+        stdout=writer,
+        stderr=subprocess.PIPE,
+        check=False,
+        env=environment(PYTHONUNBUFFERED=unbuffered),
+    )
+    os.close(writer)
+    assert (done.returncode, done.stderr) == (141, b"")
+
+
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_a_reader_that_has_seen_enough(
+    press: Press, monkeypatch: pytest.MonkeyPatch, unbuffered: str
+) -> None:
+    """A program of 65535 words does not fit into a pipe: half of it is written."""
+    monkeypatch.setenv("PYTHONUNBUFFERED", unbuffered)
+    build_simulation(ladder_words=65535, state="large")
+    with started("backup", "-", "-p", "sim:large", "--single-pass") as command:
+        assert command.stdout is not None
+        assert command.stderr is not None
+        assert command.stdout.read(10) == '{\n "schema'
+        command.stdout.close()
+        assert command.stderr.read() == ""
+    assert command.returncode == 141
+    assert press.program == OLD
+
+
+@pytest.mark.parametrize("as_json", [[], ["--json"]], ids=["words", "json"])
+@pytest.mark.parametrize(
+    ("words", "code"),
+    [
+        ("diff old.json new.json", 1),
+        ("diff old.json old.json", 141),
+        ("verify new.json -p sim:plc.state", 1),
+        ("snapshot R0-R999 -p sim:", 141),
+        ("snapshot R0-R999 R9000 -p sim:", 4),
+        ("loopback --count 5 -p sim:", 141),
+        ("watch R0 --count 3 --interval 0 -p sim:", 141),
+        ("watch R0 R9000 --interval 0 -p sim:", 4),
+    ],
+)
+def test_a_report_whose_command_nobody_reads(press: Press, words: str, code: int, as_json: list[str]) -> None:
+    """What goes into files is whole, and the exit code is the job's; 141 where that would be 0."""
+    assert press.new.exists()
+    reader, writer = os.pipe()
+    os.close(reader)
+    done = subprocess.run(
+        [*COMMAND, *words.split(), "--report", "d.html", *as_json],
+        stdout=writer,
+        stderr=subprocess.PIPE,
+        check=False,
+        env=environment(),
+    )
+    os.close(writer)
+    assert done.returncode == code, done
+    assert Path("d.html").read_text(encoding="utf-8").rstrip().endswith("</html>")
+
+
+def test_a_restore_whose_words_nobody_reads(press: Press) -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    command = [*COMMAND, "restore", str(press.new), "-p", press.target, "--yes"]
+    done = subprocess.run(command, stdout=writer, stderr=subprocess.PIPE, check=False, env=environment())
+    os.close(writer)
+    assert done.returncode == 141
+    assert press.program == load_backup(press.new).program
+
+
+SPEC = """
+[[item]]
+element = "R0"
+name = "Öltemperatur €"
+unit = "°C"
+"""
+LOCALES = [
+    {"PYTHONIOENCODING": "cp1252"},
+    {"PYTHONIOENCODING": "ascii:strict"},
+    {"PYTHONIOENCODING": "utf-16"},
+    {"PYTHONIOENCODING": "", "LC_ALL": "C", "PYTHONCOERCECLOCALE": "0", "PYTHONUTF8": "0"},
+]
+
+
+@pytest.mark.parametrize("locale", LOCALES, ids=lambda locale: "-".join(locale.values()))
+@pytest.mark.parametrize("form", ["csv", "influx", "prometheus", "ndjson", "json"])
+def test_data_are_utf_8_whatever_the_locale_says(place: Path, form: str, locale: dict[str, str]) -> None:
+    """On standard output the same bytes as in a file."""
+    (place / "a.toml").write_text(SPEC, encoding="utf-8")
+    words = ["snapshot", "--spec", "a.toml", "-p", "sim:", "--format", form]
+    env = environment(**locale)
+    printed = subprocess.run([*COMMAND, *words], capture_output=True, check=False, env=env)
+    assert (printed.returncode, printed.stderr) == (0, b"")
+    subprocess.run([*COMMAND, *words, "-o", "a"], check=True, env=env)
+
+    def timeless(data: bytes) -> str:
+        return re.sub(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ|\d{10}\d*|0\.\d+", "TIME", data.decode("utf-8"))
+
+    assert timeless(printed.stdout) == timeless((place / "a").read_bytes())
+    if form in {"csv", "influx", "prometheus"}:
+        assert "Öl" in printed.stdout.decode("utf-8")
+
+
+@pytest.mark.parametrize("locale", LOCALES, ids=lambda locale: "-".join(locale.values()))
+def test_words_bend_and_never_break(place: Path, locale: dict[str, str]) -> None:
+    """On a terminal, and on stderr, what the encoding lacks is shown as a code."""
+    (place / "Ω.json").write_text("{}", encoding="utf-8")
+    done = subprocess.run(
+        [*COMMAND, "inspect", "Ω.json"], capture_output=True, check=False, env=environment(**locale)
+    )
+    assert done.returncode == 5
+    assert b"Traceback" not in done.stderr
+    assert b"fault of fatektool" not in done.stderr.replace(b"\0", b"")
+
+
+FULL = "> /dev/full"
+
+
+@pytest.mark.parametrize("as_json", [False, True], ids=["words", "json"])
+@pytest.mark.parametrize(
+    "command", ["backup -", "status", "inspect old.json", "schema", "verify old.json", "ports"]
+)
+def test_stdout_on_a_full_disk(press: Press, command: str, *, as_json: bool) -> None:
+    port = ["-p", press.target] if command.split(maxsplit=1)[0] in {"backup", "status", "verify"} else []
+    done = process(*command.split(), *port, *(["--json"] if as_json else []), redirect=FULL)
+    if command == "ports" and not as_json and done.code == 0:
+        return  # this computer has none: nothing is printed
+    assert done.code == 5
+    line = one_line(done.err.splitlines()[-1])
+    assert line.startswith("fatektool: standard output cannot be written: No space left on device; make room")
+
+
+@pytest.mark.parametrize("words", [["--help"], ["--version"]])
+def test_help_on_a_full_disk(words: list[str]) -> None:
+    assert process(*words, redirect=FULL).code == 5
+
+
+def test_an_error_keeps_its_exit_code_wherever_its_words_go(press: Press) -> None:
+    for redirect in (FULL, "2> /dev/full", ">&-", "2>&-", "> /dev/full 2>&1", ">&- 2>&- <&-"):
+        for option in ([], ["--json"]):
+            done = process("restore", press.new, "-p", press.target, *option, redirect=redirect)
+            assert done.code == 2, redirect
+            assert "Traceback" not in done.err
+            assert process("status", "-p", "/dev/nope", *option, redirect=redirect).code == 3, redirect
+
+
+def test_closed_streams_stop_no_command(press: Press) -> None:
+    for number, redirect in enumerate((">&-", "2>&-", "<&-", ">&- 2>&- <&-", "2> /dev/full")):
+        assert process("backup", f"{number}.json", "-p", press.target, redirect=redirect).code == 0
+        assert load_backup(Path(f"{number}.json")).program == OLD
+
+
+def test_a_restore_goes_on_when_nobody_hears_it(press: Press) -> None:
+    for redirect in ("2> /dev/full", "2>&-"):
+        for file in (press.new, press.old):
+            done = process("restore", file, "-p", press.target, "--yes", "-v", redirect=redirect)
+            assert done.code == 0
+            assert press.program == load_backup(file).program
+
+
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_a_disk_that_is_full_half_way(press: Press, unbuffered: str) -> None:
+    """The first 8 kB fit: half a backup must not pass for a whole one."""
+    limit = f"import resource; resource.setrlimit({resource.RLIMIT_FSIZE}, (8192, 8192))"
+    limited = f"{limit}; from fatektool.cli import main; main()"
+    command = [sys.executable, "-c", limited, "backup", "-", "-p", "sim:", "--single-pass"]
+    with Path("out").open("wb") as out:
+        done = subprocess.run(
+            command,
+            stdout=out,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+            env=environment(PYTHONUNBUFFERED=unbuffered),
+        )
+    assert done.returncode == 5
+    assert one_line(done.stderr).startswith("fatektool: standard output cannot be written: File too large")
+    assert press.program == OLD
+
+
+# --- standard input, and what the shell makes of > and < ----------------------------------------------------
+
+
+def fed(words: str, data: bytes) -> subprocess.CompletedProcess[bytes]:
+    return subprocess.run(
+        [*COMMAND, *words.split()], input=data, capture_output=True, check=False, env=environment()
+    )
+
+
+def test_a_program_is_read_from_standard_input(press: Press) -> None:
+    """Wherever one is read: ``-`` is standard input. A restore needs ``--yes``, and saves where it stands."""
+    old, new = press.old.read_bytes(), press.new.read_bytes()
+    for word in ("-", "/dev/stdin"):
+        done = fed(f"inspect {word} --raw {len(word)}.bin", old)
+        assert (done.returncode, Path(f"{len(word)}.bin").read_bytes()) == (0, OLD.data)
+        assert fed(f"verify {word} -p {press.target}", old).returncode == 0
+        assert fed(f"diff {word} new.json", old).returncode == 1
+        assert fed(f"diff new.json {word}", new).returncode == 0
+    done = fed(f"restore - -p {press.target}", new)
+    assert (done.returncode, b"add --yes" in done.stderr) == (2, True)
+    assert fed(f"restore - -p {press.target} --yes", new).returncode == 0
+    assert press.program == load_backup(press.new).program
+    (kept,) = Path().glob("stdin.safety-st01-*.json")
+    assert load_backup(kept).program == OLD
+    snapshot = fed(f"snapshot R0 -p {press.target}", b"").stdout
+    assert fed("snapshot diff - -", snapshot).returncode == 2
+    Path("s.json").write_bytes(snapshot)
+    assert fed("snapshot diff - s.json", snapshot).returncode == 0
+    assert fed(f"snapshot apply - -p {press.target} --yes", snapshot).returncode == 0
+    assert fed(f"write R0=9 -p {press.target}", b"").returncode == 0
+    assert fed(f"snapshot apply - -p {press.target} --yes", snapshot).returncode == 0
+    assert len(list(Path().glob("stdin.safety-st01-*.json"))) == 2  # no name that begins with -
+
+
+@pytest.mark.parametrize("words", ["inspect -", "diff - x.json", "snapshot diff - -", "link table check -"])
+def test_standard_input_that_is_empty(words: str) -> None:
+    done = fed(words, b"")
+    assert done.returncode == 2
+    assert b"standard input is empty; name it once" in done.stderr
+
+
+@pytest.mark.skipif(shutil.which("gzip") is None, reason="needs gzip")
+def test_pipes_of_the_shell(press: Press) -> None:
+    """``>(…)`` and ``<(…)`` are files to a command."""
+    target = f"-p {press.target}"
+
+    def bash(command: str) -> subprocess.CompletedProcess[str]:
+        line = command.replace("fatektool", f"{sys.executable} -m fatektool")
+        return subprocess.run(
+            ["bash", "-c", line], capture_output=True, text=True, check=False, env=environment()
+        )
+
+    assert (
+        bash(f"fatektool backup >(gzip > x.gz) {target} && while ! gzip -t x.gz; do :; done").returncode == 0
+    )
+    assert bash("gzip -dc x.gz > x.json").returncode == 0
+    assert load_backup(Path("x.json")).program == OLD
+    assert bash("fatektool inspect <(gzip -dc x.gz)").returncode == 0
+    assert bash(f"fatektool restore <(gzip -dc x.gz) {target} --dry-run").returncode == 0
+    done = bash(f"fatektool snapshot R0 {target} -o /dev/stdout")
+    assert (done.returncode, json.loads(done.stdout)["values"]) == (0, {"R0": 0})
+    done = bash(f"fatektool snapshot R0 {target} -o /dev/stdout --format csv > x.csv")
+    assert (done.returncode, Path("x.csv").read_text()[:5]) == (0, "time,")
+    assert bash(f"fatektool backup /dev/stdout {target} > y.json").returncode == 0
+    assert load_backup(Path("y.json")).program == OLD
+    assert bash(f"fatektool snapshot R0 {target} -o >(cat > z.json); wait; sync").returncode == 0
+
+
+# --- texts as Windows writes them ---
+
+BOM = b"\xef\xbb\xbf"
+READERS = [
+    ("old.json", "inspect {}"),
+    ("s.json", "snapshot diff {} s.json"),
+    ("s.ndjson", "snapshot diff {} s.json"),
+    ("spec.toml", "snapshot --spec {} -p sim:"),
+    ("spec.toml", "watch --spec {} --count 1 -p sim:"),
+    ("t.toml", "link table check {}"),
+    ("fatek.toml", "inventory check --inventory {}"),
+    ("x.ndjson", "decode {}"),
+]
+
+
+@pytest.mark.parametrize(("file", "words"), READERS)
+def test_texts_as_windows_writes_them(press: Press, file: str, words: str) -> None:
+    """A byte order mark is no fault; UTF-16 is one, told in one clear line; so is what is no text."""
+    Path("spec.toml").write_text(SPEC, encoding="utf-8")
+    Path("fatek.toml").write_text('[plc.x]\ntarget = "sim:"\n')
+    Path("t.toml").write_text('kind = "md0"\n[[row]]\n')
+    for words_ in ("snapshot R0 -p sim: -o s.json", "snapshot R0 -p sim: --append s.ndjson"):
+        assert fed(words_, b"").returncode == 0
+    assert fed("status --brief -p sim: --trace x.ndjson", b"").returncode == 0
+    plain = (press.folder / file).read_bytes()
+    as_it_is = fed(words.format(file), b"")
+    for name, data in (("bom-", BOM + plain), ("crlf-", BOM + plain.replace(b"\n", b"\r\n"))):
+        Path(name + file).write_bytes(data)
+        done = fed(words.format(name + file), b"")
+        assert done.returncode == as_it_is.returncode, done
+        assert b"Traceback" not in done.stderr
+    for name, encoding in (("utf-16-", "utf-16"), ("le-", "utf-16-le"), ("be-", "utf-16-be")):
+        Path(name + file).write_bytes(plain.decode().encode(encoding))
+        done = fed(words.format(name + file), b"")
+        assert done.returncode in {1, 2, 5}
+        assert b"text in UTF-16, expected UTF-8: save it as UTF-8" in done.stderr + done.stdout

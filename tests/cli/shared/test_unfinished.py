@@ -1,0 +1,209 @@
+"""A restore that did not complete is remembered: who talks to that PLC next is warned."""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from fatektool.cli.shared.unfinished import record_of
+from fatektool.errors import DataError
+from fatektool.jobs.programs.unfinished import Unfinished
+from fatektool.simulator.refusal import Refusal
+from tests.cli.running import NEW, OLD, Cli, Door, Press, served
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+WARNING = "warning: this PLC's restore is unfinished: it must not RUN"
+QUICK = ("--timeout", "0.2", "--retries", "0")
+
+
+@pytest.fixture
+def door() -> Iterator[Door]:
+    with served(faults=["power-cut=4"]) as found:
+        yield found
+
+
+def fail(cli: Cli, press: Press, door: Door) -> str:
+    """A restore whose PLC loses its power; the command that finishes it."""
+    done = cli("restore", press.new, "-p", door.target, "--yes", *QUICK)
+    assert done.code == 6
+    door.simulation.power_on()
+    return done.err.splitlines()[-1]
+
+
+def test_who_talks_to_it_next_is_warned(press: Press, cli: Cli, door: Door, state_folder: Path) -> None:
+    command = fail(cli, press, door)
+    (record,) = state_folder.iterdir()
+    (safety,) = press.safety
+    again = command  # FILE was a whole path already
+    for words in (["status"], ["backup", "x.json"], ["run", "--yes"], ["read", "R0"], ["verify", press.new]):
+        done = cli(*words, "-p", door.target)
+        lines = done.err.splitlines()
+        at = lines.index(WARNING)
+        assert lines[at + 1].startswith("  begun        20")
+        assert lines[at + 2] == f"  file         {press.new}"
+        assert lines[at + 3] == f"  old program  {safety}"
+        assert lines[at + 4].startswith(
+            "  other PLC?   if another one is connected now, do not finish it here"
+        )
+        assert lines[at + 4].endswith(f", and delete {record}")
+        assert lines[at + 5 : at + 7] == ["  to finish it:", again], words
+        assert record.exists()
+    checked = cli("check", "--expect", "any", "-p", door.target)
+    assert checked.code == 2
+    assert "restore UNFINISHED since 20" in checked.out
+    assert cli("stop", "-p", door.target, "--yes").code == 0
+    document = cli("status", "-p", door.target, "--json").document("status")["unfinished_restore"]
+    assert (document["file"], document["safety_backup"]) == (str(press.new), str(safety))
+    assert document["command"] == again
+
+
+def test_the_command_that_is_said_finishes_it_and_nobody_is_warned_any_more(
+    press: Press, cli: Cli, door: Door, state_folder: Path
+) -> None:
+    command = fail(cli, press, door)
+    done = cli(*shlex.split(command)[1:])
+    assert done.code == 0
+    assert WARNING not in done.err
+    assert door.pages == NEW.pages
+    assert not list(state_folder.iterdir())
+    done = cli("status", "-p", door.target, "--json")
+    assert done.err == ""
+    assert done.document("status")["unfinished_restore"] is None
+
+
+def test_another_plc_is_not_meant(press: Press, cli: Cli, door: Door) -> None:
+    fail(cli, press, door)
+    assert WARNING not in cli("status", "-p", press.target).err
+    assert record_of(door.target, 1) != record_of(door.target, 2)
+    assert record_of("sim:", 1) is None
+
+
+def test_two_names_of_one_line_are_one(place: Path) -> None:
+    (place / "link").symlink_to(place / "plc.state")
+    assert record_of(f"sim:{place}/link", 1) == record_of(f"sim:{place}/plc.state", 1)
+    assert record_of("tcp://HOST", 1) == record_of("udp://host:500", 1)
+
+
+def test_verify_that_finds_it_whole_clears_it(press: Press, cli: Cli, door: Door, state_folder: Path) -> None:
+    fail(cli, press, door)
+    assert cli("verify", press.old, "-p", door.target).code == 1
+    assert list(state_folder.iterdir())
+    door.simulation.plcs[1].pages[:] = OLD.pages
+    done = cli("verify", press.old, "-p", door.target)
+    assert (done.code, WARNING in done.err) == (0, False)
+    assert not list(state_folder.iterdir())
+
+
+def test_the_record_is_there_before_the_first_page_is_written(
+    press: Press, cli: Cli, state_folder: Path
+) -> None:
+    with served() as door:
+        device = door.simulation.plcs[1]
+        write, seen = device.write_page, []
+
+        def write_page(page: int, content: bytes) -> None:
+            seen.append(len(list(state_folder.iterdir())))
+            write(page, content)
+
+        device.write_page = write_page  # type: ignore[method-assign]
+        assert cli("restore", press.new, "-p", door.target, "--yes").code == 0
+    assert seen == [1] * 8
+    assert not list(state_folder.iterdir())
+
+
+def test_what_changed_nothing_leaves_no_record_and_no_safety_copy(
+    press: Press, cli: Cli, state_folder: Path
+) -> None:
+    with served() as door:
+        assert cli("restore", press.new, "-p", door.target).code == 2  # nobody to ask
+        assert press.safety == []
+        device = door.simulation.plcs[1]
+
+        def write_page(page: int, content: bytes) -> None:  # noqa: ARG001
+            raise Refusal(4)
+
+        device.write_page = write_page  # type: ignore[method-assign]
+        assert cli("restore", press.new, "-p", door.target, "--yes").code == 4
+        assert not list(state_folder.iterdir())
+        assert cli("restore", press.new, "-p", door.target, "--yes", "--rollback").code == 4
+        assert not list(state_folder.iterdir())
+
+
+def test_an_attempt_that_changes_nothing_leaves_what_was_known(
+    press: Press, cli: Cli, door: Door, state_folder: Path
+) -> None:
+    fail(cli, press, door)
+    (record,) = state_folder.iterdir()
+    before = record.read_bytes()
+    device = door.simulation.plcs[1]
+
+    def write_page(page: int, content: bytes) -> None:  # noqa: ARG001
+        raise Refusal(4)
+
+    device.write_page = write_page  # type: ignore[method-assign]
+    assert cli("restore", press.old, "-p", door.target, "--yes").code == 4
+    assert record.read_bytes() == before
+
+
+def test_the_way_back_to_the_last_whole_program_is_kept(press: Press, cli: Cli, state_folder: Path) -> None:
+    with served(faults=["power-cut=4"]) as door:
+        fail(cli, press, door)
+        (first,) = press.safety
+    (record,) = state_folder.iterdir()
+    other = press.folder / "other.json"
+    other.write_bytes(press.old.read_bytes())
+    with served(faults=["power-cut=2"]) as second:
+        record.rename(str(record_of(second.target, 1)))
+        second.simulation.plcs[1].pages[1:3] = NEW.pages[1:3]
+        assert cli("restore", other, "-p", second.target, "--yes", *QUICK).code == 6
+        found = Unfinished.load(next(iter(state_folder.iterdir())))
+    assert found.file == str(other)
+    assert found.safety_backup == str(first)
+
+
+def test_a_record_that_cannot_be_written_stops_nothing(
+    press: Press, cli: Cli, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("FATEKTOOL_STATE_DIR", str(press.new))  # a file
+    done = cli("restore", press.new, "-p", press.target, "--yes")
+    assert done.code == 0
+    assert press.program == NEW
+    assert "warning: no record of this restore, should it not complete: " in done.err
+
+
+@pytest.mark.parametrize(
+    "text", ["", "{}", "[]", "\0", '{"schema": "fatektool.unfinished/1", "station": "1"}']
+)
+def test_a_record_that_cannot_be_read_is_a_warning(
+    press: Press, cli: Cli, state_folder: Path, text: str
+) -> None:
+    state_folder.mkdir()
+    path = str(record_of(press.target, 1))
+    with open(path, "w", encoding="utf-8") as file:  # noqa: PTH123
+        file.write(text)
+    done = cli("status", "-p", press.target, "--json")
+    assert done.code == 0
+    assert done.err == f"warning: this PLC's restore is unfinished, and its record cannot be read: {path}\n"
+    assert done.document("status")["unfinished_restore"] is None
+    assert cli("restore", press.new, "-p", press.target, "--yes").code == 0
+    assert not os.path.exists(path)  # noqa: PTH110
+
+
+def test_a_record_is_read_as_it_was_written(tmp_path: Path) -> None:
+    record = Unfinished(
+        "tcp://h", 7, "2026-11-22T03:15:00Z", "/a b.json", None, "fatektool restore '/a b.json'"
+    )
+    record.save(tmp_path / "deep" / "er" / "x.json")
+    assert Unfinished.load(tmp_path / "deep" / "er" / "x.json") == record
+    found: dict[str, Any] = json.loads((tmp_path / "deep" / "er" / "x.json").read_bytes())
+    for key in list(found):
+        (tmp_path / "y.json").write_text(json.dumps({name: found[name] for name in found if name != key}))
+        with pytest.raises(DataError):
+            Unfinished.load(tmp_path / "y.json")

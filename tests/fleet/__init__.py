@@ -1,1 +1,0 @@
-"""Many PLCs: fleet, check, alarms."""

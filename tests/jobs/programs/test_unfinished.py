@@ -1,0 +1,400 @@
+"""A restore that does not come to its end: what it says, what the PLC holds, how it is finished."""
+
+from __future__ import annotations
+
+import errno
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from fatektool.errors import (
+    DataError,
+    FatektoolError,
+    LineError,
+    PlcError,
+    RestoreIncomplete,
+    UsageError,
+)
+from fatektool.jobs.programs.restore import RestoreOptions, RestoreResult, restore
+from fatektool.program.archive import load_backup
+from tests.jobs.bench import READ_PAGE, RUN_STOP, WRITE_PAGE, Bench, Seen
+from tests.program.samples import backup, changed, program
+
+if TYPE_CHECKING:
+    from fatektool.jobs.progress import Progress
+    from fatektool.program.image import Program
+
+PAGES = 8
+OLD, NEW = program(400, seed=1), program(400, seed=2)
+
+
+def put(
+    bench: Bench,
+    folder: Path,
+    *,
+    wanted: Program = NEW,
+    safety: bool = True,
+    progress: Progress = lambda phase, done, total: None,  # noqa: ARG005
+    **options: bool,
+) -> RestoreResult:
+    return restore(
+        bench.plc,
+        backup(wanted),
+        folder / "press.json",
+        confirm=lambda plan, kept: True,  # noqa: ARG005
+        options=RestoreOptions(**options),
+        safety_folder=folder if safety else None,
+        progress=progress,
+    )
+
+
+def told_right(error: RestoreIncomplete, bench: Bench, wanted: Program = NEW) -> None:
+    """What the error says of the pages is what the PLC holds, and of the way back what lies there."""
+    if error.details["safety_backup"] is not None:
+        assert load_backup(Path(error.details["safety_backup"])).program == OLD
+    new, old, uncertain = (error.details[f"pages_{state}"] for state in ("written", "old", "uncertain"))
+    for page in new:
+        assert bench.pages[page] == wanted.pages[page], page
+    for page in old:
+        assert bench.pages[page] == OLD.pages[page], page
+    assert len({*new, *old, *uncertain}) == len(new) + len(old) + len(uncertain)
+    for page in {*range(PAGES)} - {*new, *old, *uncertain}:
+        assert bench.pages[page] == wanted.pages[page], page
+
+
+def finish(bench: Bench, folder: Path, error: RestoreIncomplete, *, written: list[int] | None = None) -> None:
+    """The same restore again, for the pages that are left; its way back is the one of the first run."""
+    original = error.details["safety_backup"]
+    assert load_backup(folder / original).program == OLD
+    bench.client()
+    bench.device.rom_pack = False
+    result = put(bench, folder, changed_only=True)
+    assert bench.pages == NEW.pages
+    assert result.verified
+    if result.safety_backup is not None:
+        assert load_backup(folder / result.safety_backup).program == OLD
+    if written is not None:
+        assert bench.tap.pages_written == written
+
+
+# --- the power goes -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("write", range(1, PAGES + 1))
+def test_the_power_goes_at_any_page(tmp_path: Path, write: int) -> None:
+    bench = Bench(OLD, faults=(f"power-cut={write}",))
+    with pytest.raises(RestoreIncomplete) as caught:
+        put(bench, tmp_path)
+    error = caught.value
+    page = write - 1
+    assert error.exit_code == 6
+    assert error.details["pages_written"] == list(range(page))
+    assert error.details["pages_uncertain"] == [page]
+    assert error.details["pages_old"] == list(range(page + 1, PAGES))
+    told_right(error, bench)
+    way_back = f"the old program lies in {error.details['safety_backup']}"
+    uncertain = f"page {page} is uncertain"
+    again = "run the same restore again"
+    for part in ("the restore did not complete (no answer", uncertain, way_back, "must not RUN", again):
+        assert part in str(error)
+
+    bench.simulation.power_on()
+    finish(bench, tmp_path, error, written=list(range(max(page, 1), PAGES)))
+    halves = 1 if write > 2 else 2  # with no page changed yet there is nothing half, and a new safety backup
+    assert len(list(tmp_path.iterdir())) == halves
+    assert all(load_backup(path).program == OLD for path in tmp_path.iterdir())
+
+
+def test_the_power_goes_again_and_again(tmp_path: Path) -> None:
+    """Page by page, with a power cut at each second write, the way back stays the first one's."""
+    bench = Bench(OLD)
+    cuts = 0
+
+    def cut(seen: Seen) -> None:
+        if seen.command == WRITE_PAGE and seen.number == 2:
+            bench.tap.forge = lambda _seen, _answer: b""
+            raise KeyboardInterrupt
+
+    while bench.pages != NEW.pages:
+        bench.tap.before = cut
+        try:
+            put(bench, tmp_path, changed_only=True)
+        except RestoreIncomplete as error:
+            told_right(error, bench)
+        cuts += 1
+        bench.client()
+        assert cuts <= PAGES
+    assert [load_backup(path).program for path in tmp_path.iterdir()] == [OLD]
+
+
+def test_without_a_safety_backup_that_is_said(tmp_path: Path) -> None:
+    bench = Bench(OLD, faults=("power-cut=4",))
+    with pytest.raises(RestoreIncomplete, match="there is no safety backup") as caught:
+        put(bench, tmp_path, safety=False)
+    assert caught.value.details["safety_backup"] is None
+
+
+# --- Ctrl-C ---------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("when", ["before", "after"])
+@pytest.mark.parametrize("page", range(PAGES))
+def test_ctrl_c_at_any_page(tmp_path: Path, page: int, when: str) -> None:
+    bench = Bench(OLD)
+
+    def interrupt(seen: Seen) -> None:
+        if (seen.command, seen.page) == (WRITE_PAGE, page):
+            raise KeyboardInterrupt
+
+    setattr(bench.tap, when, interrupt)
+    with pytest.raises(RestoreIncomplete, match=r"did not complete \(interrupted\)") as caught:
+        put(bench, tmp_path)
+    assert caught.value.details["pages_written"] == list(range(page))
+    assert caught.value.details["pages_uncertain"] == [page]
+    told_right(caught.value, bench)
+    finish(bench, tmp_path, caught.value)
+
+
+@pytest.mark.parametrize("phase", ["writing", "reading back"])
+@pytest.mark.parametrize("done", range(PAGES + 1))
+def test_ctrl_c_between_two_pages(tmp_path: Path, phase: str, done: int) -> None:
+    bench = Bench(OLD)
+
+    def interrupt(now: str, pages: int, _total: int) -> None:
+        if (now, pages) == (phase, done):
+            raise KeyboardInterrupt
+
+    with pytest.raises(RestoreIncomplete) as caught:
+        put(bench, tmp_path, progress=interrupt)
+    assert caught.value.details["pages_uncertain"] == []
+    assert caught.value.details["pages_written"] == list(range(done if phase == "writing" else PAGES))
+    told_right(caught.value, bench)
+    finish(bench, tmp_path, caught.value)
+
+
+@pytest.mark.parametrize("phase", ["old program", "old program, pass 2"])
+def test_ctrl_c_before_anything_is_written(tmp_path: Path, phase: str) -> None:
+    bench = Bench(OLD)
+
+    def interrupt(now: str, done: int, _total: int) -> None:
+        if (now, done) == (phase, 4):
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        put(bench, tmp_path, progress=interrupt)
+    assert bench.pages == OLD.pages
+
+
+# --- the PLC says no ------------------------------------------------------------------------------------
+
+
+def lock_from(bench: Bench, *pages: int) -> None:
+    """The PLC refuses to have these pages written."""
+
+    def lock(seen: Seen) -> None:
+        bench.device.rom_pack = seen.command == WRITE_PAGE and seen.page in pages
+
+    bench.tap.before = lock
+
+
+@pytest.mark.parametrize("rollback", [False, True])
+@pytest.mark.parametrize("wanted", [NEW, changed(OLD, 1, 5)], ids=["all pages", "the header is the same"])
+def test_the_first_change_is_refused(tmp_path: Path, wanted: Program, *, rollback: bool) -> None:
+    bench = Bench(OLD)
+    bench.device.running = True
+    lock_from(bench, *range(1, PAGES))
+    with pytest.raises(PlcError) as caught:
+        put(bench, tmp_path, wanted=wanted, stop=True, rollback=rollback)
+    error = caught.value
+    assert error.exit_code == 4
+    assert "the PLC refused to write program page 1 (50): error 3" in error.message
+    assert error.message.endswith("nothing was changed: the PLC holds its old program and is in STOP")
+    assert "ROM pack" in str(error.hint)
+    assert error.details["code"] == "3"
+    assert bench.pages == OLD.pages
+    assert not bench.device.running
+
+
+@pytest.mark.parametrize("page", range(2, PAGES))
+def test_a_later_page_is_refused(tmp_path: Path, page: int) -> None:
+    bench = Bench(OLD)
+    lock_from(bench, page)
+    with pytest.raises(RestoreIncomplete) as caught:
+        put(bench, tmp_path)
+    assert "refused to write program page" in caught.value.details["cause"]
+    assert caught.value.details["pages_uncertain"] == []
+    assert caught.value.details["pages_old"] == list(range(page, PAGES))
+    told_right(caught.value, bench)
+    finish(bench, tmp_path, caught.value, written=list(range(page, PAGES)))
+
+
+# --- rollback -------------------------------------------------------------------------------------------
+
+
+def test_rollback_after_a_refusal(tmp_path: Path) -> None:
+    bench = Bench(OLD)
+    lock_from(bench, 5)
+    with pytest.raises(PlcError) as caught:
+        put(bench, tmp_path, rollback=True)
+    error = caught.value
+    assert error.exit_code == 4
+    assert "refused to write program page 5" in error.message
+    assert "rolled back: the PLC holds its old program again, read back and proven, and is in STOP" in str(
+        error
+    )
+    assert error.details["rolled_back"] is True
+    assert bench.pages == OLD.pages
+    assert bench.tap.pages_written == [0, 1, 2, 3, 4, 5, 0, 1, 2, 3, 4]
+    assert load_backup(tmp_path / error.details["safety_backup"]).program == OLD
+
+
+def test_rollback_after_a_silence(tmp_path: Path) -> None:
+    bench = Bench(OLD, faults=("power-cut=4",))
+
+    def power_on(phase: str, _done: int, _total: int) -> None:
+        if phase == "rolling back":
+            bench.simulation.power_on()
+
+    with pytest.raises(LineError, match=r"no answer.*; rolled back: ") as caught:
+        put(bench, tmp_path, rollback=True, progress=power_on)
+    assert caught.value.exit_code == 3
+    assert bench.pages == OLD.pages
+
+
+def test_rollback_that_fails_too(tmp_path: Path) -> None:
+    bench = Bench(OLD, faults=("power-cut=4",))
+    with pytest.raises(RestoreIncomplete, match="; and rolling back failed: no answer") as caught:
+        put(bench, tmp_path, rollback=True)
+    assert caught.value.details["pages_uncertain"] == [0, 3]
+    assert caught.value.details["pages_written"] == [1, 2]
+    told_right(caught.value, bench)
+    bench.simulation.power_on()
+    finish(bench, tmp_path, caught.value)
+
+
+def test_ctrl_c_while_rolling_back(tmp_path: Path) -> None:
+    bench = Bench(OLD)
+    lock_from(bench, 5)
+
+    def interrupt(phase: str, done: int, _total: int) -> None:
+        if (phase, done) == ("rolling back", 2):
+            raise KeyboardInterrupt
+
+    with pytest.raises(RestoreIncomplete, match="and rolling back failed: interrupted") as caught:
+        put(bench, tmp_path, rollback=True, progress=interrupt)
+    assert caught.value.details["pages_written"] == [2, 3, 4]
+    told_right(caught.value, bench)
+    finish(bench, tmp_path, caught.value)
+
+
+# --- lies and other surprises ---------------------------------------------------------------------------
+
+
+def test_a_plc_that_acknowledges_and_writes_nothing(tmp_path: Path) -> None:
+    bench = Bench(OLD, faults=("lying-write=1",))
+    with pytest.raises(PlcError, match="acknowledged page 1-7, but holds something else there") as caught:
+        put(bench, tmp_path)
+    assert "nothing was changed: the PLC holds its old program" in caught.value.message
+    assert "worn out or protected" in str(caught.value)
+    assert bench.pages == OLD.pages
+
+
+def test_a_write_that_was_not_made_is_made_again(tmp_path: Path) -> None:
+    bench = Bench(OLD)
+
+    def lie(seen: Seen) -> None:
+        bench.device.acknowledge_only = seen.page == 4 and seen.number <= PAGES
+
+    bench.tap.before = lie
+    assert put(bench, tmp_path).verified
+    assert bench.tap.pages_written == [*range(PAGES), 4]
+    assert bench.pages == NEW.pages
+
+
+def test_ctrl_c_between_a_lie_and_its_second_chance(tmp_path: Path) -> None:
+    bench = Bench(OLD)
+
+    def lie(seen: Seen) -> None:
+        bench.device.acknowledge_only = seen.page in {4, 6}
+
+    def interrupt(phase: str, done: int, _total: int) -> None:
+        if (phase, done) == ("writing again", 0):
+            raise KeyboardInterrupt
+
+    bench.tap.before = lie
+    with pytest.raises(RestoreIncomplete) as caught:
+        put(bench, tmp_path, progress=interrupt)
+    assert caught.value.details["pages_old"] == [4, 6]
+    told_right(caught.value, bench)
+
+
+def test_a_page_that_holds_neither(tmp_path: Path) -> None:
+    bench = Bench(OLD)
+
+    def wear_out(seen: Seen) -> None:
+        if (seen.command, seen.page) == (WRITE_PAGE, 4):
+            bench.device.pages[4] = bytes(128)
+
+    bench.tap.after = wear_out
+    with pytest.raises(RestoreIncomplete, match="acknowledged page 4, but holds something else") as caught:
+        put(bench, tmp_path)
+    assert caught.value.details["pages_uncertain"] == [4]
+    told_right(caught.value, bench)
+
+
+@pytest.mark.parametrize(
+    ("error", "cause"),
+    [
+        (UsageError("cannot write the trace: No space left on device"), "cannot write the trace"),
+        (OSError(errno.EIO, "Input/output error"), "a fault of fatektool itself: OSError"),
+        (ZeroDivisionError("surprise"), "a fault of fatektool itself: ZeroDivisionError: surprise"),
+    ],
+)
+@pytest.mark.parametrize("rollback", [False, True])
+def test_whatever_else_fails_the_plc_is_not_left_without_a_word(
+    tmp_path: Path, error: Exception, cause: str, *, rollback: bool
+) -> None:
+    bench = Bench(OLD)
+
+    def fail(seen: Seen) -> None:
+        if (seen.command, seen.number) == (WRITE_PAGE, 5):
+            raise error
+
+    bench.tap.before = fail
+    with pytest.raises(FatektoolError) as caught:
+        put(bench, tmp_path, rollback=rollback)
+    assert cause in caught.value.message
+    if rollback:
+        assert "rolled back: the PLC holds its old program again" in caught.value.message
+        assert bench.pages == OLD.pages
+        return
+    assert isinstance(caught.value, RestoreIncomplete)
+    told_right(caught.value, bench)
+
+
+FAULTS = ["drop", "flip", "truncate", "noise", "duplicate", "late", "slow", "wrong-station", "lying-write"]
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("p", [0.05, 0.3])
+@pytest.mark.parametrize("fault", FAULTS)
+def test_over_a_bad_line_it_is_done_or_said_how_far(tmp_path: Path, fault: str, p: float, seed: int) -> None:
+    bench = Bench(OLD, faults=(f"{fault}={p}",), seed=seed)
+    try:
+        result = put(bench, tmp_path)
+    except RestoreIncomplete as error:
+        told_right(error, bench)
+    except (LineError, PlcError, DataError):
+        assert bench.pages == OLD.pages
+    else:
+        assert result.verified
+        assert bench.pages == NEW.pages
+
+
+def test_what_a_restore_asks_of_the_plc_is_as_little_as_can_be(tmp_path: Path) -> None:
+    bench = Bench(OLD)
+    put(bench, tmp_path, single_pass=True, wanted=changed(OLD, 3), changed_only=True)
+    assert bench.tap.count[WRITE_PAGE] == 1
+    assert bench.tap.count[READ_PAGE] == 2 * PAGES
+    assert RUN_STOP not in bench.tap.count

@@ -1,1 +1,0 @@
-"""Loopback test, diagnosis, scan and doctor."""

@@ -1,1 +1,0 @@
-"""Tests of the communication ports and the tables of CLINK and M-BUS, as values, jobs and commands."""

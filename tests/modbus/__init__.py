@@ -1,1 +1,0 @@
-"""Modbus: the client, on pymodbus' PDUs, and the simulated slave, without them, each from the papers."""

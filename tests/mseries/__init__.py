@@ -1,1 +1,0 @@
-"""The M-series client and the simulated M-series PLC, each built from the paper, together."""

@@ -1,0 +1,246 @@
+"""Imports point down and in no circle, and nothing below the command line prints."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import pytest
+
+import fatektool
+from fatektool.cli.app import ENTRIES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+ROOT = Path(fatektool.__file__).parent
+
+RANKS = {
+    "errors": 0,
+    "version": 0,
+    "files": 1,
+    "protocol": 1,
+    "program": 2,
+    "simulator": 1,
+    "plcports": 2,
+    "ladder": 3,
+    "project": 4,
+    "transport": 2,
+    "planner": 3,
+    "exchange": 3,
+    "client": 4,
+    "connection": 5,
+    "jobs": 6,
+    "history": 6,
+    "inventory": 6,
+    "report": 6,
+    "cli": 7,
+    "__init__": 7,
+    "__main__": 8,
+}
+"""A folder may import from lower ones and from itself."""
+
+TO_THE_SIMULATOR = {"simulator", "connection", "cli"}
+PRINTERS = {"click", "rich", "logging"}
+
+
+class Import(NamedTuple):
+    """A module of this package, and a module that it imports somewhere in its code."""
+
+    by: str
+    name: str
+
+    @property
+    def folder(self) -> str:
+        return folder_of(self.by)
+
+
+def folder_of(module: str) -> str:
+    parts = module.split(".")
+    return parts[1] if len(parts) > 1 else "__init__"
+
+
+def trees() -> Iterator[tuple[str, ast.Module]]:
+    for path in sorted(ROOT.rglob("*.py")):
+        parts = path.relative_to(ROOT.parent).with_suffix("").parts
+        name = ".".join(parts[:-1] if parts[-1] == "__init__" and len(parts) > 2 else parts)
+        yield name, ast.parse(path.read_text(encoding="utf-8"), str(path))
+
+
+def imports() -> Iterator[Import]:
+    for module, tree in trees():
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Import):
+                yield from (Import(module, alias.name) for alias in node.names)
+            elif isinstance(node, ast.ImportFrom):
+                assert node.level == 0, f"{module}: a relative import"
+                assert node.module
+                yield Import(module, node.module)
+                if node.module == "fatektool":
+                    yield from (Import(module, f"fatektool.{alias.name}") for alias in node.names)
+
+
+IMPORTS = list(imports())
+OURS = [found for found in IMPORTS if found.name.startswith("fatektool.")]
+
+
+def test_every_folder_has_a_rank() -> None:
+    assert {folder_of(module) for module, _ in trees()} <= RANKS.keys()
+    assert len(OURS) > 100
+
+
+@pytest.mark.parametrize("folder", sorted({found.folder for found in OURS}))
+def test_imports_point_down(folder: str) -> None:
+    for found in OURS:
+        other = folder_of(found.name)
+        if found.folder != folder or other in {folder, "version"}:
+            continue
+        assert RANKS[other] < RANKS[folder], f"{found.by} imports {found.name}"
+
+
+MODULES = {module for module, _ in trees()}
+
+IN_A_CIRCLE: set[str] = {
+    "fatektool.exchange.attempts",
+    "fatektool.exchange.fences",
+    "fatektool.exchange.link",
+    "fatektool.exchange.no_answer",
+    "fatektool.exchange.receiver",
+    "fatektool.exchange.sending",
+    "fatektool.inventory.entries",
+    "fatektool.inventory.find",
+    "fatektool.protocol.commands",
+    "fatektool.protocol.status",
+    "fatektool.simulator.listen.discovery",
+    "fatektool.simulator.listen.listeners",
+    "fatektool.simulator.listen.pty",
+    "fatektool.simulator.listen.servers",
+}
+"""Still to be untied: this may only shrink."""
+
+
+def module_of(name: str) -> str:
+    """The module that a name is in: ``fatektool.errors`` for ``fatektool.errors.DataError``."""
+    while name not in MODULES:
+        name = name.rpartition(".")[0]
+    return name
+
+
+def graph() -> dict[str, set[str]]:
+    """Each module and those it imports, under TYPE_CHECKING and within functions too."""
+    found: dict[str, set[str]] = {module: set() for module in MODULES}
+    for module, tree in trees():
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Import):
+                names = [alias.name for alias in node.names]
+            elif isinstance(node, ast.ImportFrom):
+                names = [f"{node.module}.{alias.name}" for alias in node.names]
+            else:
+                continue
+            found[module] |= {module_of(name) for name in names if name.startswith("fatektool.")}
+    return found
+
+
+def reached(module: str, edges: dict[str, set[str]]) -> set[str]:
+    """Every module that this one needs, directly or by others."""
+    found: set[str] = set()
+    new = set(edges[module])
+    while new:
+        found |= new
+        new = {further for each in new for further in edges[each]} - found
+    return found
+
+
+def test_no_file_is_in_a_circle() -> None:
+    edges = graph()
+    assert {module for module in MODULES if module in reached(module, edges)} == IN_A_CIRCLE
+
+
+COMMANDS_BY_COMMANDS: set[tuple[str, str]] = {
+    ("elements.discrete", "elements.read"),
+    ("elements.snapshot", "elements.read"),
+    ("elements.snapshot_apply", "elements.read"),
+    ("elements.watch", "elements.read"),
+    ("elements.watch", "elements.snapshot"),
+    ("elements.write", "elements.read"),
+    ("line.link.modem", "elements.read"),
+    ("line.link.modem", "line.link.ports"),
+    ("line.link.ports", "elements.read"),
+    ("line.link.ports", "line.link.result"),
+    ("line.link.table", "line.link.result"),
+    ("line.link.table_write", "elements.read"),
+    ("many.fleet.check", "many.check"),
+    ("many.history", "programs.backup"),
+    ("many.history", "programs.diff"),
+    ("many.history", "programs.inspect"),
+    ("programs.inspect", "programs.backup"),
+}
+"""Still to be untied: this may only shrink."""
+
+SUBCOMMANDS = {
+    ("elements.snapshot", "elements.snapshot_apply"),
+    ("line.link.table", "line.link.table_write"),
+    ("many.fleet.group", "many.fleet.check"),
+}
+"""A group names its own."""
+
+
+def is_command(tree: ast.Module) -> bool:
+    """True for a file that defines a command or a group of them."""
+    for node in tree.body:
+        if isinstance(node, ast.FunctionDef):
+            for mark in node.decorator_list:
+                called = mark.func if isinstance(mark, ast.Call) else mark
+                if isinstance(called, ast.Attribute) and called.attr in {"command", "group"}:
+                    return True
+    return False
+
+
+def test_no_command_imports_a_command() -> None:
+    commands = {module for module, tree in trees() if is_command(tree)} - {"fatektool.cli.app"}
+    assert len(commands) > 30
+    edges = graph()
+    found = {
+        (by.removeprefix("fatektool.cli."), of.removeprefix("fatektool.cli."))
+        for by in commands
+        for of in edges[by] & commands
+    }
+    assert found - SUBCOMMANDS == COMMANDS_BY_COMMANDS
+
+
+def test_the_simulator_shares_no_code_with_the_client() -> None:
+    for found in OURS:
+        if folder_of(found.name) == "simulator":
+            assert found.folder in TO_THE_SIMULATOR, f"{found.by} imports {found.name}"
+        if found.folder == "simulator":
+            assert folder_of(found.name) in {"simulator", "errors"}, f"{found.by} imports {found.name}"
+
+
+def test_only_the_command_line_prints() -> None:
+    for found in IMPORTS:
+        if found.name.partition(".")[0] in PRINTERS:
+            assert found.folder == "cli", f"{found.by} imports {found.name}"
+    for module, tree in trees():
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Name) and node.id in {"print", "input"}:
+                pytest.fail(f"{module}, line {node.lineno}: {node.id}")
+
+
+def test_the_rooms_below_the_lines_do_no_input_or_output() -> None:
+    """Protocol has no I/O, no clock, no threads; program touches files in one place."""
+    forbidden = {"socket", "serial", "threading", "asyncio", "subprocess", "select", "time", "selectors"}
+    for found in IMPORTS:
+        if found.folder in {"protocol", "program", "ladder", "project"}:
+            assert found.name.partition(".")[0] not in forbidden, f"{found.by} imports {found.name}"
+        if found.name.partition(".")[0] in {"os", "pathlib", "tempfile"} and found.folder in {
+            "program",
+            "ladder",
+        }:
+            assert found.by in {"fatektool.files.atomic", "fatektool.program.archive"}, found
+
+
+@pytest.mark.parametrize("name", ENTRIES)
+def test_every_command_is_in_the_readme(name: str) -> None:
+    readme = (ROOT.parent / "README.md").read_text(encoding="utf-8")
+    assert f"`{name}" in readme or f"fatektool {name}" in readme
