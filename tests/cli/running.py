@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import subprocess
-import sys
 from contextlib import contextmanager
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -17,6 +16,7 @@ from fatektool.program.archive import save_backup
 from fatektool.program.image import Program
 from fatektool.simulator.build import Simulation, build_simulation
 from fatektool.simulator.listen.servers import Server
+from tests.forked import CAN_FORK, COMMAND, PIPE, Forked, Process
 from tests.hurry import hurried
 from tests.program.samples import backup, program
 
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 
 OLD, NEW = program(400, seed=1), program(400, seed=2)
 PAGES = 8
-COMMAND = [sys.executable, "-m", "fatektool"]
 
 
 class Done(NamedTuple):
@@ -128,32 +127,31 @@ def environment(**more: str) -> dict[str, str]:
 
 
 def process(*words: object, redirect: str = "", **more: str) -> Done:
-    """Run a command as a process; ``redirect`` is redirections and pipes behind it."""
-    command: Any = [*COMMAND, *map(str, words)]
+    """Run a command as a process; with redirections and pipes behind it, in a shell, as one of its own."""
     if redirect:
-        command = ["bash", "-c", f'set -o pipefail; "$@" {redirect}', "bash", *command]
-    done = subprocess.run(
-        command,
-        capture_output=True,
-        text=True,
-        check=False,
-        stdin=subprocess.DEVNULL,
-        env=environment(**more),
-    )
-    return Done(done.returncode, done.stdout, done.stderr)
+        command = ["bash", "-c", f'set -o pipefail; "$@" {redirect}', "bash", *COMMAND, *map(str, words)]
+        done = subprocess.run(
+            command,
+            capture_output=True,
+            text=True,
+            check=False,
+            stdin=subprocess.DEVNULL,
+            env=environment(**more),
+        )
+        return Done(done.returncode, done.stdout, done.stderr)
+    with started(*words, env=environment(**more)) as running:
+        out, err = running.communicate()
+    return Done(running.wait(), out, err)
 
 
-def started(*words: object, **options: Any) -> subprocess.Popen[str]:
+def started(*words: object, env: dict[str, str] | None = None) -> Process:
     """Start a command as a process."""
-    return subprocess.Popen(
-        [*COMMAND, *map(str, words)],
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        env=environment(),
-        **options,
-    )
+    env = env or environment()
+    if not CAN_FORK:
+        command = [*COMMAND, *map(str, words)]
+        null = subprocess.DEVNULL
+        return subprocess.Popen(command, stdin=null, stdout=PIPE, stderr=PIPE, text=True, env=env)
+    return Forked(words, stdin=subprocess.DEVNULL, stdout=PIPE, stderr=PIPE, environment=env)
 
 
 def one_line(text: str) -> str:

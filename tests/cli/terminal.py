@@ -7,21 +7,16 @@ import fcntl
 import os
 import re
 import struct
-import subprocess
-import sys
 import termios
 from typing import TYPE_CHECKING
 
-from tests.cli.running import COMMAND, environment
+from tests.cli.running import environment
+from tests.forked import Forked
 
 if TYPE_CHECKING:
     from types import TracebackType
     from typing import Self
 
-_TAKE_TERMINAL = (
-    "import fcntl, os, sys, termios; os.setsid(); fcntl.ioctl(2, termios.TIOCSCTTY, 0); "
-    "os.execv(sys.argv[1], sys.argv[1:])"
-)
 _ESCAPE = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
 
 
@@ -33,12 +28,13 @@ class Terminal:
     ) -> None:
         self.master, slave = os.openpty()
         fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", lines, columns, 0, 0))
-        self.process = subprocess.Popen(
-            [sys.executable, "-c", _TAKE_TERMINAL, *COMMAND, *map(str, words)],
+        self.process = Forked(
+            words,
             stdin=slave,
             stdout=slave if stdout is None else stdout,
             stderr=slave,
-            env=environment(**more),
+            environment=environment(**more),
+            terminal=True,
         )
         os.close(slave)
         self.raw = ""

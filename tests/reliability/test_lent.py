@@ -23,7 +23,8 @@ from tests.reliability.test_two import REGISTERS, line, value
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
-    from subprocess import Popen
+
+    from tests.forked import Process
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="ptys and signals of POSIX")
 
@@ -83,7 +84,7 @@ def over_a_pty(folder: Path) -> Iterator[str]:
 class Watch:
     """``watch`` in a process of its own, whose output is always read: a full pipe would hold it up."""
 
-    def __init__(self, process: Popen[str]) -> None:
+    def __init__(self, process: Process) -> None:
         self.process = process
         self.pid = process.pid
         self._lines: SimpleQueue[str] = SimpleQueue()

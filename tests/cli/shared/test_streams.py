@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import re
-import resource
 import shutil
 import subprocess
 import sys
@@ -15,7 +14,38 @@ import pytest
 
 from fatektool.program.archive import Backup, load_backup
 from fatektool.simulator.build import build_simulation
-from tests.cli.running import COMMAND, OLD, Press, environment, one_line, process, started
+from tests.cli.running import OLD, Done, Press, environment, one_line, process, started
+from tests.forked import COMMAND, PIPE, Forked
+
+CLOSED = {">&-": [1], "2>&-": [2], "<&-": [0], ">&- 2>&- <&-": [0, 1, 2]}
+"""Redirections of a shell, as descriptors that a process has not."""
+
+
+def redirected(*words: object, redirect: str = "", given: bytes = b"") -> Done:
+    """Run a command with its streams as these redirections of a shell would have them."""
+    with Path("/dev/full").open("wb") as full:
+        command = Forked(
+            words,
+            stdin=PIPE,
+            stdout=full if redirect.startswith("> /dev/full") else PIPE,
+            stderr=full if redirect in {"2> /dev/full", "> /dev/full 2>&1"} else PIPE,
+            closed=CLOSED.get(redirect, []),
+            environment=environment(),
+            text=False,
+        )
+    with command:
+        out, err = command.communicate(given)
+    return Done(command.wait(), *((data or b"").decode() for data in (out, err)))
+
+
+def unread(*words: object, **more: str) -> Done:
+    """Run a command whose standard output nobody reads."""
+    reader, writer = os.pipe()
+    os.close(reader)
+    with Forked(words, stdout=writer, stderr=PIPE, environment=environment(**more)) as command:
+        os.close(writer)
+        _, err = command.communicate()
+    return Done(command.wait(), "", err)
 
 
 def test_a_backup_to_stdout_is_the_file(press: Press) -> None:
@@ -41,17 +71,14 @@ def test_a_backup_through_a_pipe(press: Press) -> None:
     ["backup - -p sim:", "status -p sim:", "--help", "status -p sim: --json", "schema"],
 )
 def test_a_reader_that_is_gone(words: str, unbuffered: str) -> None:
-    reader, writer = os.pipe()
-    os.close(reader)
-    done = subprocess.run(
-        [*COMMAND, *words.split()],
-        stdout=writer,
-        stderr=subprocess.PIPE,
-        check=False,
-        env=environment(PYTHONUNBUFFERED=unbuffered),
-    )
-    os.close(writer)
-    assert (done.returncode, done.stderr) == (141, b"")
+    assert unread(*words.split(), PYTHONUNBUFFERED=unbuffered) == (141, "", "")
+
+
+def test_a_reader_of_a_shell_that_is_gone() -> None:
+    """A process of its own, as a user has it."""
+    for unbuffered in ("", "1"):
+        done = process("status", "-p", "sim:", redirect="| true", PYTHONUNBUFFERED=unbuffered)
+        assert (done.code, done.err) in {(141, ""), (0, "")}  # it may have been quicker than the reader's end
 
 
 @pytest.mark.parametrize("unbuffered", ["", "1"])
@@ -88,27 +115,13 @@ def test_a_reader_that_has_seen_enough(
 def test_a_report_whose_command_nobody_reads(press: Press, words: str, code: int, as_json: list[str]) -> None:
     """What goes into files is whole, and the exit code is the job's; 141 where that would be 0."""
     assert press.new.exists()
-    reader, writer = os.pipe()
-    os.close(reader)
-    done = subprocess.run(
-        [*COMMAND, *words.split(), "--report", "d.html", *as_json],
-        stdout=writer,
-        stderr=subprocess.PIPE,
-        check=False,
-        env=environment(),
-    )
-    os.close(writer)
-    assert done.returncode == code, done
+    done = unread(*words.split(), "--report", "d.html", *as_json)
+    assert done.code == code, done
     assert Path("d.html").read_text(encoding="utf-8").rstrip().endswith("</html>")
 
 
 def test_a_restore_whose_words_nobody_reads(press: Press) -> None:
-    reader, writer = os.pipe()
-    os.close(reader)
-    command = [*COMMAND, "restore", str(press.new), "-p", press.target, "--yes"]
-    done = subprocess.run(command, stdout=writer, stderr=subprocess.PIPE, check=False, env=environment())
-    os.close(writer)
-    assert done.returncode == 141
+    assert unread("restore", press.new, "-p", press.target, "--yes").code == 141
     assert press.program == load_backup(press.new).program
 
 
@@ -126,23 +139,42 @@ LOCALES = [
 ]
 
 
+IN_ONE = """
+import os, sys
+from fatektool.cli import main, run
+
+run("snapshot --spec a.toml -p sim: -o first".split())  # what is loaded now is loaded in each child
+for number, line in enumerate(sys.argv[1:]):
+    if not os.fork():
+        os.dup2(os.open(f"{number}.out", os.O_WRONLY | os.O_CREAT), 1)
+        main(line.split())
+    assert os.wait()[1] == 0, line
+"""
+"""Each command line in a child, whose interpreter was started once, with one locale."""
+
+
 @pytest.mark.parametrize("locale", LOCALES, ids=lambda locale: "-".join(locale.values()))
-@pytest.mark.parametrize("form", ["csv", "influx", "prometheus", "ndjson", "json"])
-def test_data_are_utf_8_whatever_the_locale_says(place: Path, form: str, locale: dict[str, str]) -> None:
+def test_data_are_utf_8_whatever_the_locale_says(place: Path, locale: dict[str, str]) -> None:
     """On standard output the same bytes as in a file."""
     (place / "a.toml").write_text(SPEC, encoding="utf-8")
-    words = ["snapshot", "--spec", "a.toml", "-p", "sim:", "--format", form]
-    env = environment(**locale)
-    printed = subprocess.run([*COMMAND, *words], capture_output=True, check=False, env=env)
-    assert (printed.returncode, printed.stderr) == (0, b"")
-    subprocess.run([*COMMAND, *words, "-o", "a"], check=True, env=env)
+    forms = ("csv", "influx", "prometheus", "ndjson", "json")
+    lines = [f"snapshot --spec a.toml -p sim: --format {form}" for form in forms]
+    lines += [f"{line} -o {form}/a" for form, line in zip(forms, lines, strict=True)]
+    for form in forms:
+        (place / form).mkdir()
+    done = subprocess.run(
+        [sys.executable, "-c", IN_ONE, *lines], capture_output=True, check=False, env=environment(**locale)
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, b"", b"")
 
     def timeless(data: bytes) -> str:
         return re.sub(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ|\d{10}\d*|0\.\d+", "TIME", data.decode("utf-8"))
 
-    assert timeless(printed.stdout) == timeless((place / "a").read_bytes())
-    if form in {"csv", "influx", "prometheus"}:
-        assert "Öl" in printed.stdout.decode("utf-8")
+    for number, form in enumerate(forms):
+        printed = (place / f"{number}.out").read_bytes()
+        assert timeless(printed) == timeless((place / form / "a").read_bytes()), form
+        if form in {"csv", "influx", "prometheus"}:
+            assert "Öl" in printed.decode("utf-8"), form
 
 
 @pytest.mark.parametrize("locale", LOCALES, ids=lambda locale: "-".join(locale.values()))
@@ -166,7 +198,7 @@ FULL = "> /dev/full"
 )
 def test_stdout_on_a_full_disk(press: Press, command: str, *, as_json: bool) -> None:
     port = ["-p", press.target] if command.split(maxsplit=1)[0] in {"backup", "status", "verify"} else []
-    done = process(*command.split(), *port, *(["--json"] if as_json else []), redirect=FULL)
+    done = redirected(*command.split(), *port, *(["--json"] if as_json else []), redirect=FULL)
     if command == "ports" and not as_json and done.code == 0:
         return  # this computer has none: nothing is printed
     assert done.code == 5
@@ -176,28 +208,37 @@ def test_stdout_on_a_full_disk(press: Press, command: str, *, as_json: bool) -> 
 
 @pytest.mark.parametrize("words", [["--help"], ["--version"]])
 def test_help_on_a_full_disk(words: list[str]) -> None:
-    assert process(*words, redirect=FULL).code == 5
+    assert redirected(*words, redirect=FULL).code == 5
 
 
 def test_an_error_keeps_its_exit_code_wherever_its_words_go(press: Press) -> None:
     for redirect in (FULL, "2> /dev/full", ">&-", "2>&-", "> /dev/full 2>&1", ">&- 2>&- <&-"):
         for option in ([], ["--json"]):
-            done = process("restore", press.new, "-p", press.target, *option, redirect=redirect)
+            done = redirected("restore", press.new, "-p", press.target, *option, redirect=redirect)
             assert done.code == 2, redirect
             assert "Traceback" not in done.err
-            assert process("status", "-p", "/dev/nope", *option, redirect=redirect).code == 3, redirect
+            assert redirected("status", "-p", "/dev/nope", *option, redirect=redirect).code == 3, redirect
 
 
 def test_closed_streams_stop_no_command(press: Press) -> None:
     for number, redirect in enumerate((">&-", "2>&-", "<&-", ">&- 2>&- <&-", "2> /dev/full")):
-        assert process("backup", f"{number}.json", "-p", press.target, redirect=redirect).code == 0
+        assert redirected("backup", f"{number}.json", "-p", press.target, redirect=redirect).code == 0
         assert load_backup(Path(f"{number}.json")).program == OLD
+
+
+def test_streams_that_a_shell_closes_and_fills(press: Press) -> None:
+    """As above, in interpreters of their own, which start without them."""
+    assert process("backup", "x.json", "-p", press.target, redirect=">&- 2>&- <&-").code == 0
+    assert load_backup(Path("x.json")).program == OLD
+    assert process("restore", press.new, "-p", press.target, redirect="> /dev/full 2>&1").code == 2
+    done = process("status", "-p", press.target, redirect=FULL)
+    assert (done.code, one_line(done.err)[:39]) == (5, "fatektool: standard output cannot be wr")
 
 
 def test_a_restore_goes_on_when_nobody_hears_it(press: Press) -> None:
     for redirect in ("2> /dev/full", "2>&-"):
         for file in (press.new, press.old):
-            done = process("restore", file, "-p", press.target, "--yes", "-v", redirect=redirect)
+            done = redirected("restore", file, "-p", press.target, "--yes", "-v", redirect=redirect)
             assert done.code == 0
             assert press.program == load_backup(file).program
 
@@ -205,30 +246,22 @@ def test_a_restore_goes_on_when_nobody_hears_it(press: Press) -> None:
 @pytest.mark.parametrize("unbuffered", ["", "1"])
 def test_a_disk_that_is_full_half_way(press: Press, unbuffered: str) -> None:
     """The first 8 kB fit: half a backup must not pass for a whole one."""
-    limit = f"import resource; resource.setrlimit({resource.RLIMIT_FSIZE}, (8192, 8192))"
-    limited = f"{limit}; from fatektool.cli import main; main()"
-    command = [sys.executable, "-c", limited, "backup", "-", "-p", "sim:", "--single-pass"]
-    with Path("out").open("wb") as out:
-        done = subprocess.run(
-            command,
-            stdout=out,
-            stderr=subprocess.PIPE,
-            text=True,
-            check=False,
-            env=environment(PYTHONUNBUFFERED=unbuffered),
-        )
-    assert done.returncode == 5
-    assert one_line(done.stderr).startswith("fatektool: standard output cannot be written: File too large")
+    words = ["backup", "-", "-p", "sim:", "--single-pass"]
+    limits, env = {"RLIMIT_FSIZE": 8192}, environment(PYTHONUNBUFFERED=unbuffered)
+    with Path("out").open("wb") as out, Forked(
+        words, stdout=out, stderr=PIPE, environment=env, limits=limits
+    ) as command:  # fmt: skip
+        _, err = command.communicate()
+    assert command.returncode == 5
+    assert one_line(err).startswith("fatektool: standard output cannot be written: File too large")
     assert press.program == OLD
 
 
 # --- standard input, and what the shell makes of > and < ----------------------------------------------------
 
 
-def fed(words: str, data: bytes) -> subprocess.CompletedProcess[bytes]:
-    return subprocess.run(
-        [*COMMAND, *words.split()], input=data, capture_output=True, check=False, env=environment()
-    )
+def fed(words: str, data: bytes) -> Done:
+    return redirected(*words.split(), given=data)
 
 
 def test_a_program_is_read_from_standard_input(press: Press) -> None:
@@ -236,31 +269,31 @@ def test_a_program_is_read_from_standard_input(press: Press) -> None:
     old, new = press.old.read_bytes(), press.new.read_bytes()
     for word in ("-", "/dev/stdin"):
         done = fed(f"inspect {word} --raw {len(word)}.bin", old)
-        assert (done.returncode, Path(f"{len(word)}.bin").read_bytes()) == (0, OLD.data)
-        assert fed(f"verify {word} -p {press.target}", old).returncode == 0
-        assert fed(f"diff {word} new.json", old).returncode == 1
-        assert fed(f"diff new.json {word}", new).returncode == 0
+        assert (done.code, Path(f"{len(word)}.bin").read_bytes()) == (0, OLD.data)
+        assert fed(f"verify {word} -p {press.target}", old).code == 0
+        assert fed(f"diff {word} new.json", old).code == 1
+        assert fed(f"diff new.json {word}", new).code == 0
     done = fed(f"restore - -p {press.target}", new)
-    assert (done.returncode, b"add --yes" in done.stderr) == (2, True)
-    assert fed(f"restore - -p {press.target} --yes", new).returncode == 0
+    assert (done.code, "add --yes" in done.err) == (2, True)
+    assert fed(f"restore - -p {press.target} --yes", new).code == 0
     assert press.program == load_backup(press.new).program
     (kept,) = Path().glob("stdin.safety-st01-*.json")
     assert load_backup(kept).program == OLD
-    snapshot = fed(f"snapshot R0 -p {press.target}", b"").stdout
-    assert fed("snapshot diff - -", snapshot).returncode == 2
+    snapshot = fed(f"snapshot R0 -p {press.target}", b"").out.encode()
+    assert fed("snapshot diff - -", snapshot).code == 2
     Path("s.json").write_bytes(snapshot)
-    assert fed("snapshot diff - s.json", snapshot).returncode == 0
-    assert fed(f"snapshot apply - -p {press.target} --yes", snapshot).returncode == 0
-    assert fed(f"write R0=9 -p {press.target}", b"").returncode == 0
-    assert fed(f"snapshot apply - -p {press.target} --yes", snapshot).returncode == 0
+    assert fed("snapshot diff - s.json", snapshot).code == 0
+    assert fed(f"snapshot apply - -p {press.target} --yes", snapshot).code == 0
+    assert fed(f"write R0=9 -p {press.target}", b"").code == 0
+    assert fed(f"snapshot apply - -p {press.target} --yes", snapshot).code == 0
     assert len(list(Path().glob("stdin.safety-st01-*.json"))) == 2  # no name that begins with -
 
 
 @pytest.mark.parametrize("words", ["inspect -", "diff - x.json", "snapshot diff - -", "link table check -"])
 def test_standard_input_that_is_empty(words: str) -> None:
     done = fed(words, b"")
-    assert done.returncode == 2
-    assert b"standard input is empty; name it once" in done.stderr
+    assert done.code == 2
+    assert "standard input is empty; name it once" in done.err
 
 
 @pytest.mark.skipif(shutil.which("gzip") is None, reason="needs gzip")
@@ -288,41 +321,3 @@ def test_pipes_of_the_shell(press: Press) -> None:
     assert bash(f"fatektool backup /dev/stdout {target} > y.json").returncode == 0
     assert load_backup(Path("y.json")).program == OLD
     assert bash(f"fatektool snapshot R0 {target} -o >(cat > z.json); wait; sync").returncode == 0
-
-
-# --- texts as Windows writes them ---
-
-BOM = b"\xef\xbb\xbf"
-READERS = [
-    ("old.json", "inspect {}"),
-    ("s.json", "snapshot diff {} s.json"),
-    ("s.ndjson", "snapshot diff {} s.json"),
-    ("spec.toml", "snapshot --spec {} -p sim:"),
-    ("spec.toml", "watch --spec {} --count 1 -p sim:"),
-    ("t.toml", "link table check {}"),
-    ("fatek.toml", "inventory check --inventory {}"),
-    ("x.ndjson", "decode {}"),
-]
-
-
-@pytest.mark.parametrize(("file", "words"), READERS)
-def test_texts_as_windows_writes_them(press: Press, file: str, words: str) -> None:
-    """A byte order mark is no fault; UTF-16 is one, told in one clear line; so is what is no text."""
-    Path("spec.toml").write_text(SPEC, encoding="utf-8")
-    Path("fatek.toml").write_text('[plc.x]\ntarget = "sim:"\n')
-    Path("t.toml").write_text('kind = "md0"\n[[row]]\n')
-    for words_ in ("snapshot R0 -p sim: -o s.json", "snapshot R0 -p sim: --append s.ndjson"):
-        assert fed(words_, b"").returncode == 0
-    assert fed("status --brief -p sim: --trace x.ndjson", b"").returncode == 0
-    plain = (press.folder / file).read_bytes()
-    as_it_is = fed(words.format(file), b"")
-    for name, data in (("bom-", BOM + plain), ("crlf-", BOM + plain.replace(b"\n", b"\r\n"))):
-        Path(name + file).write_bytes(data)
-        done = fed(words.format(name + file), b"")
-        assert done.returncode == as_it_is.returncode, done
-        assert b"Traceback" not in done.stderr
-    for name, encoding in (("utf-16-", "utf-16"), ("le-", "utf-16-le"), ("be-", "utf-16-be")):
-        Path(name + file).write_bytes(plain.decode().encode(encoding))
-        done = fed(words.format(name + file), b"")
-        assert done.returncode in {1, 2, 5}
-        assert b"text in UTF-16, expected UTF-8: save it as UTF-8" in done.stderr + done.stdout

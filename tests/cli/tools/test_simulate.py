@@ -15,13 +15,14 @@ from tests.cli.running import NEW, Cli, Press, check, one_line, started
 from tests.guard import GUARD_S
 
 if TYPE_CHECKING:
-    import subprocess
     from collections.abc import Iterator
     from pathlib import Path
 
+    from tests.forked import Process
+
 
 @contextmanager
-def simulator(*words: object) -> Iterator[subprocess.Popen[str]]:
+def simulator(*words: object) -> Iterator[Process]:
     running = started("simulate", *words)
     try:
         yield running
@@ -30,7 +31,7 @@ def simulator(*words: object) -> Iterator[subprocess.Popen[str]]:
         running.communicate()
 
 
-def listening(running: subprocess.Popen[str], doors: int = 1) -> list[str]:
+def listening(running: Process, doors: int = 1) -> list[str]:
     assert running.stdout is not None
     lines = [running.stdout.readline() for _ in range(doors)]
     assert all(line.startswith("listening ") for line in lines)

@@ -1,0 +1,194 @@
+"""Commands as processes that need not start Python: children of a process that has loaded the program.
+
+To start Python and to load the program takes a quarter of a second, to fork some milliseconds. A child has
+standard streams, a folder, an environment, signals, an end and a terminal of its own, as any process has. It
+shares the interpreter's start: what is tested of that, such as the encoding by the locale, needs
+``subprocess``. So does everything where there is no fork.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import json
+import os
+import select
+import signal
+import socket
+import subprocess
+import sys
+import threading
+from functools import cache
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any
+
+from tests.root import ROOT
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+    from types import TracebackType
+    from typing import Self
+
+COMMAND = [sys.executable, "-m", "fatektool"]
+PIPE = subprocess.PIPE
+CAN_FORK = hasattr(os, "fork") and hasattr(socket, "send_fds")
+
+
+@cache
+def _server() -> tuple[socket.socket, threading.Lock]:
+    """The process that makes the children; it ends with this one, and ignores what ends a terminal's."""
+    ours, its = socket.socketpair()
+    process = subprocess.Popen(
+        [sys.executable, "-m", "tests.fork_server"], cwd=ROOT, stdin=its.fileno(), start_new_session=True
+    )
+    its.close()
+
+    def end() -> None:
+        ours.close()
+        process.wait()
+
+    atexit.register(end)
+    return ours, threading.Lock()
+
+
+class Forked:
+    """A command that runs, as ``subprocess.Popen`` has it.
+
+    Args:
+        words: the command line behind ``fatektool``.
+        stdin, stdout, stderr: a descriptor or file; ``PIPE``; None for this process's own.
+        environment: all of it.
+        folder: where it runs; None for the present one.
+        closed: which of the three standard descriptors it has not.
+        terminal: True if standard error is to be its controlling terminal.
+        text: False if its pipes take and give bytes.
+        limits: the most of what the system gives it, by the name in ``resource``.
+    """
+
+    def __init__(
+        self,
+        words: Iterable[object],
+        *,
+        stdin: int | IO[bytes] | None = None,
+        stdout: int | IO[bytes] | None = None,
+        stderr: int | IO[bytes] | None = None,
+        environment: dict[str, str] | None = None,
+        folder: Path | None = None,
+        closed: Sequence[int] = (),
+        terminal: bool = False,
+        text: bool = True,
+        limits: dict[str, int] | None = None,
+    ) -> None:
+        self.args = [str(word) for word in words]
+        self.returncode: int | None = None
+        self.stdin: IO[Any] | None = None
+        self.stdout: IO[Any] | None = None
+        self.stderr: IO[Any] | None = None
+        given: list[int] = []
+        ours: list[int] = []
+        for number, (name, stream) in enumerate((("stdin", stdin), ("stdout", stdout), ("stderr", stderr))):
+            if stream == PIPE:
+                ends = os.pipe()
+                kept, its = (ends[1], ends[0]) if name == "stdin" else ends
+                mode = "w" if name == "stdin" else "r"
+                opened = os.fdopen(kept, mode, encoding="utf-8") if text else os.fdopen(kept, f"{mode}b")
+                setattr(self, name, opened)
+                ours.append(its)
+                given.append(its)
+            elif stream == subprocess.DEVNULL:
+                given.append(os.open(os.devnull, os.O_RDWR))
+                ours.append(given[-1])
+            elif stream is None:
+                given.append(number)
+            else:
+                given.append(stream if isinstance(stream, int) else stream.fileno())
+        self._told, telling = os.pipe()
+        ours.append(telling)
+        order = {
+            "words": self.args,
+            "folder": str(folder or Path.cwd()),
+            "environment": dict(os.environ) if environment is None else environment,
+            "closed": list(closed),
+            "terminal": terminal,
+            "limits": limits or {},
+        }
+        data = json.dumps(order).encode() + b"\n"
+        orders, lock = _server()
+        with lock:
+            socket.send_fds(orders, [data[:1]], [*given, telling])
+            orders.sendall(data[1:])
+        for descriptor in ours:
+            os.close(descriptor)
+        self._buffer = b""
+        self.pid = int(self._line())
+
+    def _line(self) -> bytes:
+        while b"\n" not in self._buffer:
+            data = os.read(self._told, 64)
+            if not data:
+                raise RuntimeError(f"{self.args}: nothing was told of its end")
+            self._buffer += data
+        line, _, self._buffer = self._buffer.partition(b"\n")
+        return line
+
+    def poll(self) -> int | None:
+        """Its exit code; None if it runs."""
+        if self.returncode is None and (self._buffer or select.select([self._told], [], [], 0)[0]):
+            return self.wait()
+        return self.returncode
+
+    def wait(self, timeout: float | None = None) -> int:
+        """Wait for its end; its exit code."""
+        if self.returncode is None:
+            if not self._buffer and not select.select([self._told], [], [], timeout)[0]:
+                raise subprocess.TimeoutExpired(self.args, timeout or 0.0)
+            self.returncode = int(self._line())
+            os.close(self._told)
+        return self.returncode
+
+    def send_signal(self, number: int) -> None:
+        if self.poll() is None:
+            os.kill(self.pid, number)
+
+    def kill(self) -> None:
+        self.send_signal(signal.SIGKILL)
+
+    def terminate(self) -> None:
+        self.send_signal(signal.SIGTERM)
+
+    def communicate(self, given: Any = None, timeout: float | None = None) -> tuple[Any, Any]:
+        """Give it its input, and read its output to the end."""
+        if self.stdin is not None:
+            with contextlib.suppress(BrokenPipeError):  # it reads no more
+                if given:
+                    self.stdin.write(given)
+                self.stdin.close()
+        texts: dict[str, Any] = {"stdout": None, "stderr": None}
+
+        def read(name: str) -> None:
+            stream = getattr(self, name)
+            if stream is not None and not stream.closed:
+                texts[name] = stream.read()
+                stream.close()
+
+        reader = threading.Thread(target=read, args=("stderr",))
+        reader.start()
+        read("stdout")
+        reader.join()
+        self.wait(timeout)
+        return texts["stdout"], texts["stderr"]
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        for stream in (self.stdout, self.stderr, self.stdin):
+            if stream is not None:
+                stream.close()
+        self.wait()
+
+
+Process = Forked | subprocess.Popen[str]
+"""A command that runs, forked where that can be done."""
