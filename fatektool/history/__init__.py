@@ -12,7 +12,7 @@ Who looks for what::
     recording    is it another program? Then a commit              revisions    'a1b2c3d', '2026-11-22', '~1'
     repository   reading, every object proven by its hash          messages     who and what, in words
     writing      the lock and the branch, in an order that holds   names        what a PLC may be called
-    trees        what stands in a tree                             packing      many small files into one
+    trees        the PLCs' files in a tree                         packing      many small files into one
     loose        an object as a file                               push         a copy in another repository
     commits      a commit in values
 """

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from stat import S_ISDIR
 from typing import TYPE_CHECKING
+
+from dulwich.objects import S_ISGITLINK
 
 from fatektool.errors import DataError
 from fatektool.history.names import name_of
 from fatektool.history.repository import Repository
 from fatektool.history.revisions import SHORT
-from fatektool.history.trees import FOLDER, SUBMODULE, files, item
+from fatektool.history.trees import files
 from fatektool.program.archive import Backup
 
 if TYPE_CHECKING:
@@ -17,6 +20,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fatektool.history.commits import Commit
+    from fatektool.history.trees import Item
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +78,6 @@ class _Check:
     def __init__(self, repository: Repository) -> None:
         self.repository = repository
         self.seen: set[str] = set()
-        self.looked_at: set[bytes] = set()
         self.programs = 0
         self.faults: list[Fault] = []
 
@@ -83,7 +86,8 @@ class _Check:
         names: tuple[str, ...] = ()
         for number, commit in enumerate(commits, 1):
             try:
-                found = self.root(commit)
+                found = self.tree(commit.tree)
+                self.look(commit, found, root=True)
                 if number == 1:
                     names = tuple(sorted(files(found)))
             except DataError as error:
@@ -114,30 +118,23 @@ class _Check:
             waiting += commit.parents
         return found
 
-    def root(self, commit: Commit) -> list[bytes]:
-        """A commit's tree: what is in it, but for what stood in the trees after it too. Gives its entries."""
-        found = self.entries(commit.tree)
-        new = set(found) - self.looked_at
-        self.looked_at |= new
-        self.items(commit, sorted(new), root=True)
-        return found
-
-    def entries(self, tree: str) -> list[bytes]:
-        """The entries of a tree; none the second time."""
-        if tree in self.seen:
+    def tree(self, sha: str) -> list[Item]:
+        """What a tree names; nothing the second time."""
+        if sha in self.seen:
             return []
-        self.seen.add(tree)
-        return self.repository.entries(tree)
+        self.seen.add(sha)
+        return self.repository.items(sha)
 
-    def items(self, commit: Commit, found: list[bytes], *, root: bool = False) -> None:
-        """What is in a tree, each object once."""
-        for mode, path, sha in map(item, found):
-            if sha in self.seen or mode == SUBMODULE:
+    def look(self, commit: Commit, found: list[Item], *, root: bool = False) -> None:
+        """Look at what a tree names, at each object once."""
+        for path, mode, raw_sha in found:
+            sha = raw_sha.decode()
+            if sha in self.seen or S_ISGITLINK(mode):
                 continue
             name = name_of(path) if root else None
             try:
-                if mode == FOLDER:
-                    self.items(commit, self.entries(sha))
+                if S_ISDIR(mode):
+                    self.look(commit, self.tree(sha))
                 else:
                     self.seen.add(sha)
                     self.file(commit, name, self.repository.read(sha, "blob"))

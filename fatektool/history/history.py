@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from typing import Self
 
     from fatektool.history.commits import Commit
+    from fatektool.history.trees import Item
 
 __all__ = ["Change", "History", "Recorded", "Stored"]
 
@@ -165,7 +166,7 @@ class History:
         """
         with Repository(self.folder) as repository:
             tip = repository.tip()
-            return [] if tip is None else sorted(repository.files(repository.commit(tip).tree))
+            return [] if tip is None else sorted(files(repository.items(repository.commit(tip).tree)))
 
     def log(self, name: str | None = None) -> Generator[Change, None, None]:
         """The changes, newest first.
@@ -203,7 +204,7 @@ class History:
             if repository.tip() is None:
                 raise self._unknown(name)
             commit = resolve(repository, name, revision)
-            blob = file_in(repository.tree(commit.tree), name)
+            blob = file_in(repository.items(commit.tree), name)
             if blob is None:
                 raise self._unknown(name, f" at {revision} ({commit.revision[:SHORT]})")
             data = repository.read(blob, "blob")
@@ -259,10 +260,10 @@ class History:
 def _changes(repository: Repository) -> Iterator[Change]:
     """What each commit did, newest first; each tree is read once, and what two have in common passed over."""
     after: Commit | None = None
-    new: set[bytes] = set()
+    new: set[Item] = set()
     for commit in repository.chain(repository.tip()):
         if after is None or commit.tree != after.tree:
-            old = set(repository.entries(commit.tree))
+            old = set(repository.items(commit.tree))
             if after is not None:
                 yield from _between(old, new, after)
             new = old
@@ -271,8 +272,8 @@ def _changes(repository: Repository) -> Iterator[Change]:
         yield from _between(set(), new, after)
 
 
-def _between(old: set[bytes], new: set[bytes], commit: Commit) -> Iterator[Change]:
-    """What one commit did, from the entries of the tree before and of its own."""
+def _between(old: set[Item], new: set[Item], commit: Commit) -> Iterator[Change]:
+    """What one commit did, from the tree before and its own."""
     before, after = files(old - new), files(new - old)
     for name in sorted(before.keys() | after.keys()):
         if before.get(name) != after.get(name):

@@ -1,10 +1,12 @@
 """Many small files into one: a thousand PLCs change some ten thousand objects a year.
 
-New objects are a file each. When there are about a thousand they go into one pack, the pack is on disk, and
-only then are the files taken away: whatever ends this, every object is there at least once.
+New objects are a file each. When there are a thousand, dulwich writes them into one pack. When the pack is on
+disk the files are taken away: whatever ends this, every object is there at least once.
 
-The objects stand in a pack as they are, without deltas: finding those in Python takes longer than reading the
-PLCs. ``git gc`` finds them, whenever somebody cares to run it.
+Which files go into it and when they are taken away is decided here: dulwich's ``pack_loose_objects`` stops at
+a damaged file, holds all objects in memory, and takes the files away before the pack's folder is synced.
+
+The pack has no deltas: to find those in Python takes longer than to read the PLCs. ``git gc`` finds them.
 """
 
 from __future__ import annotations
@@ -12,6 +14,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Final
 
+from dulwich.objects import OBJECT_CLASSES
 from dulwich.pack import UnpackedObject
 
 from fatektool.files.atomic import sync_folder
@@ -23,17 +26,16 @@ if TYPE_CHECKING:
     from fatektool.history.repository import Repository
 
 MANY: Final = 1000
-_SAMPLE: Final = 16
+_UNFINISHED_S: Final = 3600  # a pack without an index may be one that git is about to finish
 _REST: Final = re.compile(r"[0-9a-f]{38}")
-_NUMBERS: Final = {"commit": 1, "tree": 2, "blob": 3, "tag": 4}
+_NUMBERS: Final = {kind.type_name.decode(): kind.type_num for kind in OBJECT_CLASSES}
 _FOLDERS: Final = [f"{number:02x}" for number in range(256)]
 _OURS: Final = ("tmp*.pack", "*.idx.lock")  # dulwich's unfinished packs; git's begin with tmp_pack_
 
 
 def is_due(repository: Repository) -> bool:
-    """True if there are about ``MANY`` loose objects: one folder in 16 tells, within a third of it."""
-    folders = (repository.folder / "objects" / name for name in _FOLDERS[::_SAMPLE])
-    return sum(1 for folder in folders if folder.is_dir() for _ in folder.iterdir()) * _SAMPLE >= MANY
+    """True if there are ``MANY`` loose objects."""
+    return repository.git.object_store.count_loose_objects() >= MANY
 
 
 def pack_loose(repository: Repository) -> int:
@@ -49,7 +51,7 @@ def pack_loose(repository: Repository) -> int:
     """
     objects = repository.folder / "objects"
     with repository.door("the loose objects"):
-        _sweep(objects)
+        _sweep(repository)
         places = [place for place in _loose(objects) if _read(repository, place) is not None]
         if not places:
             return 0
@@ -86,9 +88,11 @@ def _loose(objects: Path) -> list[Path]:
     return [path for folder in folders for path in sorted(folder.iterdir()) if _REST.fullmatch(path.name)]
 
 
-def _sweep(objects: Path) -> None:
+def _sweep(repository: Repository) -> None:
     """Take away what killed runs left unfinished."""
+    objects = repository.folder / "objects"
     left = [path for name in _FOLDERS for path in (objects / name).glob(f"{TEMPORARY}*")]
     left += [path for pattern in _OURS for path in (objects / "pack").glob(pattern)]
     for path in left:
         path.unlink(missing_ok=True)
+    repository.git.object_store.prune(_UNFINISHED_S)

@@ -15,13 +15,13 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
-from dulwich.objects import Commit, ObjectID
+from dulwich.objects import Blob, Commit, ObjectID
 
 from fatektool.errors import DataError, UsageError
 from fatektool.history import messages
-from fatektool.history.loose import hash_of, write_loose
+from fatektool.history.loose import write_loose
 from fatektool.history.repository import Newest
-from fatektool.history.trees import entries, file_in, files, with_file
+from fatektool.history.trees import file_in, files, with_file
 from fatektool.history.writing import Branch, move_branch
 from fatektool.ladder.differences import compare_code, summary
 from fatektool.ladder.image import code_of
@@ -31,7 +31,10 @@ from fatektool.program.compare import Comparison, compare
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from dulwich.objects import Tree
+
     from fatektool.history.repository import Repository
+    from fatektool.history.trees import Item
     from fatektool.ladder.differences import NetworkChange
 
 _MOST_NETWORKS = 1000
@@ -85,7 +88,7 @@ def look(repository: Repository, name: str, backup: Backup) -> Look:
         DataError: the newest commit or its tree does not hold.
     """
     newest = repository.newest()
-    blob = file_in(newest.tree, name)
+    blob = file_in(newest.items, name)
     if blob is None:
         return Look(newest)
     try:
@@ -127,17 +130,18 @@ def write(
         networks = _networks(found.old, backup)
         few = None if networks is None else summary(networks) or "same code"
         subject = messages.subject(name, found.changes, few, damaged=bool(found.warnings))
-        blob, tree = _new_file(repository, found.newest.tree, name, backup)
+        blob, tree = _new_file(repository, found.newest.items, name, backup)
         put = partial(write_loose, repository.folder, rights=repository.rights)
-        put("blob", blob)
-        commit = _commit(put("tree", tree), found.newest.tip, name, backup, now)
+        put(blob)
+        put(tree)
+        commit = _commit(tree, found.newest.tip, name, backup, now)
         every = None if networks is None else summary(networks, _MOST_NETWORKS) or "same code"
         commit.message = messages.message(subject, found.changes, found.old, backup, every)
-        new = put("commit", commit.as_raw_string())
+        new = put(commit)
         still = partial(_is_tip, repository, found.newest.tip)
         branch = Branch(repository.folder, repository.branch(), repository.rights)
         if move_branch(branch, new, still, wait_s=wait_s):
-            repository.is_now(Newest(new, tree))
+            repository.is_now(Newest(new, tree.items()))
             return Recorded(name, new, subject, found.changes, found.warnings)
 
 
@@ -153,17 +157,16 @@ def _is_tip(repository: Repository, tip: str | None) -> bool:
     return repository.tip() == tip
 
 
-def _new_file(repository: Repository, old: bytes, name: str, backup: Backup) -> tuple[bytes, bytes]:
+def _new_file(repository: Repository, old: Sequence[Item], name: str, backup: Backup) -> tuple[Blob, Tree]:
     """The blob, and the tree with it."""
     if file_in(old, name) is None:
         _require_own_file(repository, old, name)
-    blob = backup.to_bytes()
-    with repository.door("the newest tree"):
-        return blob, with_file(old, name, hash_of("blob", blob))
+    blob = Blob.from_string(backup.to_bytes())
+    return blob, with_file(old, name, blob)
 
 
-def _require_own_file(repository: Repository, tree: bytes, name: str) -> None:
-    others = files(entries(tree))
+def _require_own_file(repository: Repository, items: Sequence[Item], name: str) -> None:
+    others = files(items)
     twin = next((other for other in others if other.casefold() == name.casefold()), None)
     if twin is not None:
         raise UsageError(
@@ -172,9 +175,9 @@ def _require_own_file(repository: Repository, tree: bytes, name: str) -> None:
         )
 
 
-def _commit(tree: str, parent: str | None, name: str, backup: Backup, now: int) -> Commit:
+def _commit(tree: Tree, parent: str | None, name: str, backup: Backup, now: int) -> Commit:
     commit = Commit()
-    commit.tree = ObjectID(tree.encode())
+    commit.tree = tree.id
     commit.parents = [] if parent is None else [ObjectID(parent.encode())]
     commit.author, commit.author_time = messages.author(name, backup), messages.read_at(backup, now)
     commit.committer, commit.commit_time = messages.committer(), now

@@ -6,11 +6,12 @@
                                  └─ parent -> tree …
 
 A reference that cannot be read is an error here, never "there is none yet": a commit without its parent
-would cut the whole history off.
+would cut the whole history off. dulwich's ``read_ref`` makes no difference between the two.
 """
 
 from __future__ import annotations
 
+import hashlib
 import re
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -18,23 +19,24 @@ from functools import cached_property
 from traceback import clear_frames
 from typing import TYPE_CHECKING, Final
 
-from dulwich.objects import ObjectID
+from dulwich.objects import ObjectID, object_header, parse_tree
 from dulwich.refs import Ref
 from dulwich.repo import Repo
 
 from fatektool.errors import DataError, FatektoolError, UsageError
 from fatektool.files.atomic import file_error
 from fatektool.history.commits import Commit, parse_commit
-from fatektool.history.loose import hash_of, read_loose
+from fatektool.history.loose import read_loose
 from fatektool.history.sharing import Rights, rights_of
-from fatektool.history.trees import entries, files
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
     from typing import Self
 
-_KINDS: Final = {1: "commit", 2: "tree", 3: "blob", 4: "tag"}
+    from fatektool.history.trees import Item
+
+_HASH_BYTES: Final = 20
 _SHA: Final = re.compile(rb"[0-9a-f]{40}")
 _BRANCH: Final = re.compile(rb"ref: (refs/heads/[^\0\s]+)\s*")
 
@@ -45,11 +47,11 @@ class Newest:
 
     Attributes:
         tip: the newest commit's hash; None before the first.
-        tree: the bytes of its tree: every PLC's file.
+        items: what its tree names: every PLC's file.
     """
 
     tip: str | None
-    tree: bytes
+    items: Sequence[Item]
 
 
 class Repository:
@@ -204,8 +206,9 @@ class Repository:
                 number, data = self.git.object_store.get_raw(ObjectID(sha.encode()))
             except KeyError:
                 raise self.damaged(f"object {sha} is missing") from None
-            kind = _KINDS[number]
-        if hash_of(kind, data) != sha:
+            head = object_header(number, len(data))
+        kind = head.partition(b" ")[0].decode()
+        if hashlib.sha1(head + data, usedforsecurity=False).hexdigest() != sha:
             raise self.damaged(f"{kind} {sha} is damaged: its bytes have another hash")
         return kind, data
 
@@ -230,31 +233,15 @@ class Repository:
             found = parse_commit(sha, data)
         return replace(found, parents=()) if sha in self.cut else found
 
-    def tree(self, sha: str) -> bytes:
-        """A tree's bytes: see ``trees``.
+    def items(self, tree: str) -> list[Item]:
+        """What a tree names, in its order.
 
         Raises:
-            DataError: it is not there, of another kind, or damaged.
+            DataError: the tree is not there, of another kind, or damaged.
         """
-        return self.read(sha, "tree")
-
-    def entries(self, sha: str) -> list[bytes]:
-        """A tree's entries, as they stand in it: see ``trees``.
-
-        Raises:
-            DataError: the tree does not hold.
-        """
-        data = self.tree(sha)
-        with self.door(f"tree {sha}"):
-            return entries(data)
-
-    def files(self, tree: str) -> dict[str, str]:
-        """The PLCs' files in a tree: name and blob. What else somebody put there is left out.
-
-        Raises:
-            DataError: the tree does not hold.
-        """
-        return files(self.entries(tree))
+        data = self.read(tree, "tree")
+        with self.door(f"tree {tree}"):
+            return list(parse_tree(data, _HASH_BYTES))
 
     def newest(self) -> Newest:
         """What the newest commit holds; read once as long as the branch names that commit.
@@ -264,7 +251,7 @@ class Repository:
         """
         tip = self.tip()
         if self._newest is None or self._newest.tip != tip:
-            self._newest = Newest(tip, b"" if tip is None else self.tree(self.commit(tip).tree))
+            self._newest = Newest(tip, [] if tip is None else self.items(self.commit(tip).tree))
         return self._newest
 
     def is_now(self, newest: Newest) -> None:

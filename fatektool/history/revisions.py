@@ -44,7 +44,7 @@ def changes_of(name: str, repository: Repository, start: str | None) -> Iterator
     seen: str | None = None
     for commit in repository.chain(start):
         if after is None or commit.tree != after.tree:
-            blob = file_in(repository.tree(commit.tree), name)
+            blob = file_in(repository.items(commit.tree), name)
             if after is not None and blob != seen:
                 yield after, seen
             seen = blob

@@ -13,6 +13,9 @@ for its own, and takes it away. Runs keep off each other by ``fatektool.lock``, 
 its process.
 
 A new repository gets its HEAD last: until then it is none, and the next run goes on making it.
+
+dulwich's ``Repo.init_bare`` and ``set_if_equals`` are not used. A killed ``init_bare`` cannot be repeated,
+and a killed ``set_if_equals`` leaves a lock that looks like git's.
 """
 
 from __future__ import annotations

@@ -55,6 +55,29 @@ def test_a_damaged_program(book: Book, data: bytes | None) -> None:
 
 
 @pytest.mark.parametrize("data", WRECKS)
+def test_the_same_program_after_damage(book: Book, data: bytes | None) -> None:
+    """The very file that is damaged is written again."""
+    book.record("press", ONE, TWO)
+    wreck(place_of(book, "HEAD:press.json"), data)
+    assert book.record("press", TWO)[0].revision
+    assert book.history.show("press").backup == TWO
+
+
+def test_the_same_program_after_damage_in_a_pack(book: Book) -> None:
+    """It is written beside the pack, and read from there."""
+    book.record("press", ONE, TWO)
+    book.git("gc", "--quiet")
+    (pack,) = book.folder.glob("objects/pack/*.pack")
+    found = pack.read_bytes()
+    middle = len(found) // 2  # within the newest program, which fills most of it
+    wreck(pack, found[:middle] + bytes(40) + found[middle + 40 :])
+    with pytest.raises(DataError):
+        book.history.show("press")
+    assert book.record("press", TWO)[0].revision
+    assert book.history.show("press").backup == TWO
+
+
+@pytest.mark.parametrize("data", WRECKS)
 @pytest.mark.parametrize("what", ["HEAD", "HEAD^{tree}"])
 def test_a_damaged_commit_or_tree(book: Book, what: str, data: bytes | None) -> None:
     book.record("press", ONE, TWO)
@@ -70,6 +93,21 @@ def test_a_damaged_commit_or_tree(book: Book, what: str, data: bytes | None) -> 
         with pytest.raises(DataError, match=r"see 'fatektool history check' and 'git fsck'"):
             ask()
     assert (book.folder / "refs/heads/main").read_text(encoding="utf-8") == f"{tip}\n"
+
+
+def test_a_tree_that_is_none(book: Book, tmp_path: Path) -> None:
+    """Its hash is right, and its bytes are no tree."""
+    book.record("press", ONE)
+    (tmp_path / "tree").write_bytes(b"100644 press.json")
+    tree = book.git("hash-object", "-t", "tree", "-w", "--literally", str(tmp_path / "tree")).strip()
+    person = ("-c", "user.name=A", "-c", "user.email=a@b")
+    tip = book.git(*person, "commit-tree", tree, "-p", "HEAD", "-m", "No tree").strip()
+    book.git("update-ref", "refs/heads/main", tip)
+    (fault,) = check(book.folder).faults
+    assert (fault.name, fault.revision) == (None, tip)
+    for ask in (lambda: book.history.show("press"), lambda: book.history.record("press", TWO)):
+        with pytest.raises(DataError, match=f"tree {tree} cannot be read"):
+            ask()
 
 
 @pytest.mark.parametrize("data", [b"", b"\n", b"0" * 39 + b"\n", b"ref: x", b"\xff" * 40, b"0" * 40])

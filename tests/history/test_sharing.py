@@ -32,7 +32,7 @@ posix = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such 
 GROUP, FIRST, SECOND = 64100, 64101, 64102  # of nobody
 ROUNDS = 40
 USER = """
-import os, pathlib, sys, tempfile  # all that is loaded later: another user may not read this Python
+import glob, os, pathlib, sys, tempfile  # all that is loaded later: another user may not read this Python
 from tests.history.books import ONE, Book
 from tests.program.samples import changed
 from dataclasses import replace
