@@ -14,13 +14,14 @@ from fatektool.connection import connect
 from fatektool.protocol.elements import Element
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.listen.servers import Server, running
+from tests.forks.shell import path as shell_path
 from tests.root import EXAMPLES
 
 
 def run(folder: Path, *command: str) -> subprocess.CompletedProcess[str]:
-    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    environment = os.environ | {"PATH": path, "FATEKTOOL_LOCK_DIR": str(folder)}
+    environment = os.environ | {"PATH": shell_path(), "FATEKTOOL_LOCK_DIR": str(folder)}
     environment.pop("PYTEST_ADDOPTS", None)  # they are for the tests around this one
+    environment["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
     return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
 
 
@@ -90,8 +91,8 @@ def test_words_that_are_missing(tmp_path: Path, name: str) -> None:
 
 
 def test_my_client(tmp_path: Path) -> None:
-    script = str(EXAMPLES / "test_my_client.py")
-    done = run(tmp_path, sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", script)
+    shutil.copy(EXAMPLES / "test_my_client.py", tmp_path)  # away from this project's settings
+    done = run(tmp_path, sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider")
     assert done.returncode == 0, done.stdout
 
 

@@ -9,15 +9,16 @@ from __future__ import annotations
 import os
 import signal
 import subprocess
-import sys
 from typing import TYPE_CHECKING
 
 import pytest
 
+from fatektool.cli import run
 from fatektool.program.archive import load_backup
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.listen.pty import PTY_SUPPORTED
 from fatektool.simulator.listen.servers import Server, running
+from tests.forks.command import COMMAND, PIPE, Forked
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -34,12 +35,16 @@ def locks_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
-def fatektool(*words: str, expect: int = 0) -> str:
-    done = subprocess.run(
-        [sys.executable, "-m", "fatektool", *words], capture_output=True, text=True, check=False
-    )
+def forked(*words: str, expect: int = 0) -> None:
+    with Forked(words, stdout=PIPE, stderr=PIPE) as process:
+        _, err = process.communicate()
+    assert process.returncode == expect, err
+
+
+def fatektool_of_its_own(*words: str, expect: int = 0) -> None:
+    """In an interpreter that was started for it, as a user's is."""
+    done = subprocess.run([*COMMAND, *words], capture_output=True, text=True, check=False)
     assert done.returncode == expect, done.stderr
-    return done.stdout
 
 
 def open_door(server: Server, medium: str, link: Path) -> str:
@@ -58,15 +63,9 @@ def medium(request: pytest.FixtureRequest) -> str:
 
 
 @pytest.fixture
-def baud(medium: str) -> float | None:
-    """The pty is paced; networks are as fast as they are."""
-    return 921600 if medium == "pty" else None
-
-
-@pytest.fixture
-def origin(tmp_path: Path, medium: str, baud: float | None) -> Iterator[tuple[str, SimulatedPlc]]:
+def origin(tmp_path: Path, medium: str) -> Iterator[tuple[str, SimulatedPlc]]:
     """The machine: a PLC in RUN."""
-    simulation = build_simulation(baud=baud)
+    simulation = build_simulation()
     simulation.plcs[1].running = True
     server = Server(simulation)
     target = open_door(server, medium, tmp_path / "machine")
@@ -75,15 +74,16 @@ def origin(tmp_path: Path, medium: str, baud: float | None) -> Iterator[tuple[st
 
 
 def test_a_program_goes_from_one_plc_to_another(
-    medium: str, baud: float | None, origin: tuple[str, SimulatedPlc], tmp_path: Path
+    medium: str, origin: tuple[str, SimulatedPlc], tmp_path: Path
 ) -> None:
     target, machine = origin
+    fatektool = fatektool_of_its_own if medium == "tcp" else forked
     fatektool("backup", "machine.json", "-p", target, *PACE)
     saved = load_backup(tmp_path / "machine.json")
     assert len(saved.program.pages) == 207
     assert list(saved.program.pages) == machine.pages
 
-    simulation = build_simulation(baud=baud, ladder_words=13184, program_seed=2)
+    simulation = build_simulation(ladder_words=13184, program_seed=2)
     spare = simulation.plcs[1]
     spare.running = True
     old = list(spare.pages)
@@ -114,15 +114,13 @@ def test_a_restore_killed_at_any_page_is_finished_by_the_same_command(page: int,
     old = list(plc.pages)
     state = tmp_path / "wanted.state"
     build_simulation(ladder_words=words, state=state)
-    fatektool("backup", "wanted.json", "-p", f"sim:{state}")
+    assert run(["backup", "wanted.json", "-p", f"sim:{state}"]) == 0
 
     server = Server(simulation)
     command = ["restore", "wanted.json", "-p", server.open_tcp().address, "--yes"]
     kill_at_page(plc, page)
     with running(server):
-        with subprocess.Popen(
-            [sys.executable, "-m", "fatektool", *command], stderr=subprocess.PIPE
-        ) as process:
+        with Forked(command, stderr=PIPE) as process:
             victims.append(process)
             process.communicate()
         assert process.returncode == -signal.SIGKILL
@@ -130,7 +128,7 @@ def test_a_restore_killed_at_any_page_is_finished_by_the_same_command(page: int,
         assert plc.pages[page + 1 :] == old[page + 1 :]
         assert kept_programs(tmp_path) == [old]
 
-        fatektool(*command)
+        assert run(command) == 0
         assert plc.pages == wanted.pages
         if page == 0:  # the header is the same in both, so that the PLC still held the old program
             assert kept_programs(tmp_path) == [old, old]
@@ -144,7 +142,7 @@ def kept_programs(folder: Path) -> list[list[bytes]]:
     return [list(load_backup(path).program.pages) for path in folder.glob("wanted.safety-*.json")]
 
 
-victims: list[subprocess.Popen[bytes]] = []
+victims: list[Forked] = []
 
 
 def kill_at_page(plc: SimulatedPlc, page: int) -> None:

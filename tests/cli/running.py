@@ -16,7 +16,7 @@ from fatektool.program.archive import save_backup
 from fatektool.program.image import Program
 from fatektool.simulator.build import Simulation, build_simulation
 from fatektool.simulator.listen.servers import Server
-from tests.forked import CAN_FORK, COMMAND, PIPE, Forked, Process
+from tests.forks.command import CAN_FORK, COMMAND, PIPE, Forked, Process
 from tests.hurry import hurried
 from tests.program.samples import backup, program
 

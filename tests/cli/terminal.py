@@ -11,7 +11,7 @@ import termios
 from typing import TYPE_CHECKING
 
 from tests.cli.running import environment
-from tests.forked import Forked
+from tests.forks.command import Forked
 
 if TYPE_CHECKING:
     from types import TracebackType

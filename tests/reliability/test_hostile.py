@@ -19,7 +19,7 @@ from fatektool.program.archive import Backup, save_backup
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.state import dump_state, parse_state
 from tests.cli.running import environment, one_line
-from tests.forked import COMMAND
+from tests.forks.command import COMMAND
 from tests.guard import GUARD_S
 from tests.plant import snapshot_of
 from tests.program.samples import backup, document, program

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from tests.forked import Process
+    from tests.forks.command import Process
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="ptys and signals of POSIX")
 

@@ -10,15 +10,17 @@ import shutil
 import subprocess
 import sys
 import tomllib
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from fatektool.jobs.snapshots.spec import parse_spec
+from tests.forks.shell import path as shell_path
 from tests.root import EXAMPLES, ROOT
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from tests.plant import Plant
 
 DOCS = (ROOT / "docs" / "snapshots.md").read_text(encoding="utf-8")
@@ -27,8 +29,7 @@ UNITS = EXAMPLES / "systemd"
 
 def shell(place: Path, script: str, **more: str) -> subprocess.CompletedProcess[str]:
     """Run a script as a user's shell would, with this fatektool in front."""
-    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    environment = os.environ | {"PATH": path, "PYTHONUTF8": "1", "LC_ALL": "C.UTF-8"} | more
+    environment = os.environ | {"PATH": shell_path(), "PYTHONUTF8": "1", "LC_ALL": "C.UTF-8"} | more
     return subprocess.run(
         ["bash", "-c", script], cwd=place, env=environment, capture_output=True, text=True, check=False
     )

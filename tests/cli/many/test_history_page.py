@@ -6,12 +6,11 @@ import os
 import re
 import shutil
 import subprocess
-import sys
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.forks.shell import path as shell_path
 from tests.root import ROOT
 from tests.test_readme import free_port
 
@@ -48,11 +47,10 @@ def test_the_page_gives_what_it_shows(book: Book) -> None:
             script += [f"{command[:-2]} > door &", "until grep -q listening door; do :; done; cat door"]
         else:
             script.append(f"{command} 2>&1")
-    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     done = subprocess.run(
         ["bash", "-c", "\n".join(script)],
         cwd=book.folder.parent,
-        env=os.environ | {"PATH": path, "FATEKTOOL_LOCK_DIR": str(book.folder.parent)},
+        env=os.environ | {"PATH": shell_path(), "FATEKTOOL_LOCK_DIR": str(book.folder.parent)},
         capture_output=True,
         text=True,
         check=False,

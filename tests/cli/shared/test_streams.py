@@ -15,7 +15,8 @@ import pytest
 from fatektool.program.archive import Backup, load_backup
 from fatektool.simulator.build import build_simulation
 from tests.cli.running import OLD, Done, Press, environment, one_line, process, started
-from tests.forked import COMMAND, PIPE, Forked
+from tests.forks.command import COMMAND, PIPE, Forked
+from tests.forks.shell import path as shell_path
 
 CLOSED = {">&-": [1], "2>&-": [2], "<&-": [0], ">&- 2>&- <&-": [0, 1, 2]}
 """Redirections of a shell, as descriptors that a process has not."""
@@ -302,9 +303,12 @@ def test_pipes_of_the_shell(press: Press) -> None:
     target = f"-p {press.target}"
 
     def bash(command: str) -> subprocess.CompletedProcess[str]:
-        line = command.replace("fatektool", f"{sys.executable} -m fatektool")
         return subprocess.run(
-            ["bash", "-c", line], capture_output=True, text=True, check=False, env=environment()
+            ["bash", "-c", command],
+            capture_output=True,
+            text=True,
+            check=False,
+            env=environment(PATH=shell_path()),
         )
 
     assert (

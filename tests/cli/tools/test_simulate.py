@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from tests.forked import Process
+    from tests.forks.command import Process
 
 
 @contextmanager

@@ -9,7 +9,6 @@ import shlex
 import shutil
 import socket
 import subprocess
-import sys
 import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,6 +16,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from fatektool.inventory.entries import parse_inventory
+from tests.forks.shell import path as shell_path
 from tests.root import EXAMPLES, ROOT
 
 if TYPE_CHECKING:
@@ -43,8 +43,7 @@ def plain(text: str) -> list[str]:
 
 def shell(script: str, **more: str) -> subprocess.CompletedProcess[str]:
     """Run a script as a user's shell would, with this fatektool in front."""
-    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    environment = os.environ | {"PATH": path, "PYTHONUTF8": "1", "LC_ALL": "C.UTF-8"} | more
+    environment = os.environ | {"PATH": shell_path(), "PYTHONUTF8": "1", "LC_ALL": "C.UTF-8"} | more
     environment.pop("PYTEST_ADDOPTS", None)
     return subprocess.run(
         ["bash", "-c", script], env=environment, capture_output=True, text=True, check=False

@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import atexit
 import contextlib
-import json
 import os
 import select
 import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import threading
 from functools import cache
 from pathlib import Path
@@ -35,20 +35,27 @@ CAN_FORK = hasattr(os, "fork") and hasattr(socket, "send_fds")
 
 
 @cache
-def _server() -> tuple[socket.socket, threading.Lock]:
-    """The process that makes the children; it ends with this one, and ignores what ends a terminal's."""
-    ours, its = socket.socketpair()
+def server() -> str:
+    """Start the process that makes the children; where it listens. It ends with this one."""
+    folder = tempfile.TemporaryDirectory(prefix="fatektool-forks-")
+    path = Path(folder.name) / "s"
     process = subprocess.Popen(
-        [sys.executable, "-m", "tests.fork_server"], cwd=ROOT, stdin=its.fileno(), start_new_session=True
+        [sys.executable, "-m", "tests.forks.server", str(path)],
+        cwd=ROOT,
+        stdin=PIPE,
+        start_new_session=True,  # what ends a terminal's processes does not end it
     )
-    its.close()
+    while not path.exists():
+        if process.poll() is not None:
+            raise RuntimeError(f"the server of forks ended with {process.returncode}")
+        threading.Event().wait(0.005)  # it says nothing when it listens
 
     def end() -> None:
-        ours.close()
-        process.wait()
+        process.communicate()
+        folder.cleanup()
 
     atexit.register(end)
-    return ours, threading.Lock()
+    return str(path)
 
 
 class Forked:
@@ -102,48 +109,35 @@ class Forked:
                 given.append(number)
             else:
                 given.append(stream if isinstance(stream, int) else stream.fileno())
-        self._told, telling = os.pipe()
-        ours.append(telling)
-        order = {
-            "words": self.args,
-            "folder": str(folder or Path.cwd()),
-            "environment": dict(os.environ) if environment is None else environment,
-            "closed": list(closed),
-            "terminal": terminal,
-            "limits": limits or {},
-        }
-        data = json.dumps(order).encode() + b"\n"
-        orders, lock = _server()
-        with lock:
-            socket.send_fds(orders, [data[:1]], [*given, telling])
-            orders.sendall(data[1:])
+        numbers = [number for number in range(3) if number not in closed]
+        order = (
+            self.args,
+            str(folder or Path.cwd()),
+            {os.fsencode(key): os.fsencode(value) for key, value in (environment or os.environ).items()},
+            numbers,
+            terminal,
+            limits or {},
+        )
+        from tests.forks import client  # which POSIX has
+
+        client.SOCKET = server()
+        self._line, self.pid = client.ask(order, [given[number] for number in numbers])
         for descriptor in ours:
             os.close(descriptor)
-        self._buffer = b""
-        self.pid = int(self._line())
-
-    def _line(self) -> bytes:
-        while b"\n" not in self._buffer:
-            data = os.read(self._told, 64)
-            if not data:
-                raise RuntimeError(f"{self.args}: nothing was told of its end")
-            self._buffer += data
-        line, _, self._buffer = self._buffer.partition(b"\n")
-        return line
 
     def poll(self) -> int | None:
         """Its exit code; None if it runs."""
-        if self.returncode is None and (self._buffer or select.select([self._told], [], [], 0)[0]):
+        if self.returncode is None and select.select([self._line], [], [], 0)[0]:
             return self.wait()
         return self.returncode
 
     def wait(self, timeout: float | None = None) -> int:
         """Wait for its end; its exit code."""
         if self.returncode is None:
-            if not self._buffer and not select.select([self._told], [], [], timeout)[0]:
+            if not select.select([self._line], [], [], timeout)[0]:
                 raise subprocess.TimeoutExpired(self.args, timeout or 0.0)
-            self.returncode = int(self._line())
-            os.close(self._told)
+            self.returncode = int.from_bytes(self._line.recv(4), "big", signed=True)
+            self._line.close()
         return self.returncode
 
     def send_signal(self, number: int) -> None:
