@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import pytest
 
 import fatektool
-from fatektool.cli.app import ENTRIES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -238,9 +237,3 @@ def test_the_rooms_below_the_lines_do_no_input_or_output() -> None:
             "ladder",
         }:
             assert found.by in {"fatektool.files.atomic", "fatektool.program.archive"}, found
-
-
-@pytest.mark.parametrize("name", ENTRIES)
-def test_every_command_is_in_the_readme(name: str) -> None:
-    readme = (ROOT.parent / "README.md").read_text(encoding="utf-8")
-    assert f"`{name}" in readme or f"fatektool {name}" in readme

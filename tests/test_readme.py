@@ -1,4 +1,4 @@
-"""The README tells the truth: its tour gives what it shows, its program runs, its commands are all there."""
+"""The README and docs/restore.md: their tours give what they show; every command and path is there."""
 
 from __future__ import annotations
 
@@ -13,9 +13,11 @@ from pathlib import Path
 import pytest
 
 from fatektool.cli.app import ENTRIES
-from tests.root import ROOT
+from tests.root import DOCS, ROOT
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
+RESTORE = (DOCS / "restore.md").read_text(encoding="utf-8")
+COMMANDS = (DOCS / "commands.md").read_text(encoding="utf-8")
 
 _TIME = re.compile(
     r"\d{8}T\d{6}Z|\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ|under 1 s|(about )?\d+ (s|min)$", re.MULTILINE
@@ -44,8 +46,9 @@ def script_of(steps: list[tuple[str, str]]) -> str:
 
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="the tour is for a POSIX shell")
-def test_the_tour_gives_what_it_shows(tmp_path: Path) -> None:
-    tour = README.split("<!-- tour -->")[1].split("<!-- /tour -->")[0]
+@pytest.mark.parametrize("page", [README, RESTORE], ids=["README.md", "restore.md"])
+def test_the_tour_gives_what_it_shows(page: str, tmp_path: Path) -> None:
+    tour = page.split("<!-- tour -->")[1].split("<!-- /tour -->", maxsplit=1)[0]
     for port in ("5500", "5501"):
         tour = tour.replace(f"127.0.0.1:{port}", f"127.0.0.1:{free_port()}")
     steps: list[tuple[str, str]] = []
@@ -63,27 +66,35 @@ def test_the_tour_gives_what_it_shows(tmp_path: Path) -> None:
         check=False,
     )
     pieces = re.split(r"^<<\d+>>\n", done.stdout, flags=re.MULTILINE)[1:]
-    assert len(pieces) == len(steps) > 8
+    assert len(pieces) == len(steps) > 5
     for (command, expected), got in zip(steps, pieces, strict=True):
         assert _TIME.sub("TIME", got) == _TIME.sub("TIME", expected), command
 
 
 def test_every_command_is_documented() -> None:
     for name in ENTRIES:
-        assert re.search(rf"`{name}\b", README), name
+        assert re.search(rf"^\|.*`{name}\b.*\|", COMMANDS, re.MULTILINE), name
 
 
-def test_every_place_it_names_is_there() -> None:
-    places = README.split("## What is where")[1]
-    named = re.findall(r"^\| (`[^|]*`) \|", places, re.MULTILINE)
-    paths = [path for cell in named for path in re.findall(r"`([^`]+)`", cell)]
-    assert len(paths) > 8
+def test_every_path_it_names_is_there() -> None:
+    paths = re.findall(r"`((?:docs/|examples/)?[\w./-]+\.md|LICENSE|docs/[\w/]*)`", README)
+    assert len(paths) > 20
     for path in paths:
         assert (ROOT / path).exists(), path
 
 
+def test_every_page_is_named() -> None:
+    """In the README, or in a page that it names."""
+    for path in DOCS.glob("*.md"):
+        assert f"docs/{path.name}" in README + COMMANDS, path.name
+
+
+def test_the_readme_is_short() -> None:
+    assert len(README.splitlines()) <= 150
+
+
 def test_the_library_example_runs(tmp_path: Path) -> None:
-    program = README.split("## The library")[1].split("```python\n")[1].split("```")[0]
+    program = README.split("## Scripts, and Python")[1].split("```python\n")[1].split("```")[0]
     program = program.replace("/dev/ttyUSB0", "sim:")
     done = subprocess.run(
         [sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, check=False
