@@ -107,8 +107,6 @@ IN_A_CIRCLE: set[str] = {
     "fatektool.exchange.no_answer",
     "fatektool.exchange.receiver",
     "fatektool.exchange.sending",
-    "fatektool.inventory.entries",
-    "fatektool.inventory.find",
     "fatektool.protocol.commands",
     "fatektool.protocol.status",
     "fatektool.simulator.listen.discovery",

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Fault:
+class Damage:
     """What does not hold.
 
     Attributes:
@@ -39,7 +39,7 @@ class Fault:
 
 
 @dataclass(frozen=True, slots=True)
-class Checked:
+class HistoryCheck:
     """A history, looked through.
 
     Attributes:
@@ -53,11 +53,11 @@ class Checked:
     commits: int
     programs: int
     names: tuple[str, ...]
-    faults: tuple[Fault, ...]
+    faults: tuple[Damage, ...]
     shallow: bool = False
 
 
-def check(folder: Path, progress: Callable[[str, int, int], None] = lambda *_: None) -> Checked:
+def check(folder: Path, progress: Callable[[str, int, int], None] = lambda *_: None) -> HistoryCheck:
     """Look a history through, from the newest commit to the first.
 
     Args:
@@ -79,9 +79,9 @@ class _Check:
         self.repository = repository
         self.seen: set[str] = set()
         self.programs = 0
-        self.faults: list[Fault] = []
+        self.faults: list[Damage] = []
 
-    def run(self, progress: Callable[[str, int, int], None]) -> Checked:
+    def run(self, progress: Callable[[str, int, int], None]) -> HistoryCheck:
         commits = self.commits()
         names: tuple[str, ...] = ()
         for number, commit in enumerate(commits, 1):
@@ -91,9 +91,9 @@ class _Check:
                 if number == 1:
                     names = tuple(sorted(files(found)))
             except DataError as error:
-                self.faults.append(Fault(commit.revision, None, error.message))
+                self.faults.append(Damage(commit.revision, None, error.message))
             progress("checking", number, len(commits))
-        return Checked(len(commits), self.programs, names, tuple(self.faults), bool(self.repository.cut))
+        return HistoryCheck(len(commits), self.programs, names, tuple(self.faults), bool(self.repository.cut))
 
     def commits(self) -> list[Commit]:
         """All commits that can be reached, newest first."""
@@ -101,7 +101,7 @@ class _Check:
         try:
             tip = self.repository.tip()
         except DataError as error:
-            self.faults.append(Fault(None, None, error.message))
+            self.faults.append(Damage(None, None, error.message))
             return found
         waiting = [] if tip is None else [tip]
         while waiting:
@@ -112,7 +112,7 @@ class _Check:
             try:
                 commit = self.repository.commit(sha)
             except DataError as error:
-                self.faults.append(Fault(sha, None, error.message))
+                self.faults.append(Damage(sha, None, error.message))
                 continue
             found.append(commit)
             waiting += commit.parents
@@ -139,7 +139,7 @@ class _Check:
                     self.seen.add(sha)
                     self.file(commit, name, self.repository.read(sha, "blob"))
             except DataError as error:
-                self.faults.append(Fault(commit.revision, name, error.message))
+                self.faults.append(Damage(commit.revision, name, error.message))
 
     def file(self, commit: Commit, name: str | None, data: bytes) -> None:
         """A file; what is no PLC's is somebody else's."""

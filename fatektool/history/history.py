@@ -13,7 +13,7 @@ from fatektool.errors import DataError, FatektoolError, UsageError
 from fatektool.files.atomic import write_whole
 from fatektool.history.names import require_name
 from fatektool.history.packing import is_due, pack_loose
-from fatektool.history.recording import Recorded, look, unchanged, write
+from fatektool.history.recording import RecordResult, look, unchanged, write
 from fatektool.history.repository import Repository, is_repository
 from fatektool.history.revisions import SHORT, changes_of, resolve
 from fatektool.history.trees import file_in, files
@@ -30,13 +30,13 @@ if TYPE_CHECKING:
     from fatektool.history.commits import Commit
     from fatektool.history.trees import Item
 
-__all__ = ["Change", "History", "Recorded", "Stored"]
+__all__ = ["History", "LogEntry", "RecordResult", "Stored"]
 
 _PATIENCE_S: Final = 1.0
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class LogEntry:
     """One PLC's part of a commit; ``removed`` if its file was taken out, which fatektool never does."""
 
     name: str
@@ -105,7 +105,7 @@ class History:
             self._close()
             self._turn.release()
 
-    def record(self, name: str, backup: Backup) -> Recorded:
+    def record(self, name: str, backup: Backup) -> RecordResult:
         """Keep a backup, if its program is another than the one that the history holds for this PLC.
 
         It is on disk when this returns. Nothing is lost if this fails at any place.
@@ -168,7 +168,7 @@ class History:
             tip = repository.tip()
             return [] if tip is None else sorted(files(repository.items(repository.commit(tip).tree)))
 
-    def log(self, name: str | None = None) -> Generator[Change, None, None]:
+    def log(self, name: str | None = None) -> Generator[LogEntry, None, None]:
         """The changes, newest first.
 
         Args:
@@ -185,7 +185,7 @@ class History:
             known = False
             for commit, blob in changes_of(name, repository, repository.tip()):
                 known = True
-                yield Change(name, commit, blob is None)
+                yield LogEntry(name, commit, blob is None)
             if not known:
                 raise self._unknown(name)
 
@@ -257,7 +257,7 @@ class History:
         )
 
 
-def _changes(repository: Repository) -> Iterator[Change]:
+def _changes(repository: Repository) -> Iterator[LogEntry]:
     """What each commit did, newest first; each tree is read once, and what two have in common passed over."""
     after: Commit | None = None
     new: set[Item] = set()
@@ -272,9 +272,9 @@ def _changes(repository: Repository) -> Iterator[Change]:
         yield from _between(set(), new, after)
 
 
-def _between(old: set[Item], new: set[Item], commit: Commit) -> Iterator[Change]:
+def _between(old: set[Item], new: set[Item], commit: Commit) -> Iterator[LogEntry]:
     """What one commit did, from the tree before and its own."""
     before, after = files(old - new), files(new - old)
     for name in sorted(before.keys() | after.keys()):
         if before.get(name) != after.get(name):
-            yield Change(name, commit, name not in after)
+            yield LogEntry(name, commit, name not in after)

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from functools import lru_cache
 from typing import Final
 
 from fatektool.errors import UsageError
+from fatektool.files.portable_name import MOST_BYTES, is_portable_name
 
 SUFFIX: Final = ".json"
-_NAME: Final = re.compile(r"\w[\w.-]{0,63}")
-_MOST_BYTES: Final = 255 - len(SUFFIX)
-_DEVICE: Final = re.compile(r"(?:COM|LPT)\d+|CON|PRN|AUX|NUL", re.ASCII | re.IGNORECASE)
 
 
 def require_name(name: str) -> str:
@@ -23,13 +20,11 @@ def require_name(name: str) -> str:
     Raises:
         UsageError: it is none.
     """
-    if not _NAME.fullmatch(name) or _DEVICE.fullmatch(name.partition(".")[0]):
+    if not is_portable_name(name):
         raise UsageError(
             f"{name!r} is no name for a PLC: expected up to 64 letters, digits, '_', '-' and '.', "
-            f"not beginning with '-' or '.', and no port's name"
+            f"{MOST_BYTES} bytes, not beginning with '-' or '.', and no port's name"
         )
-    if len(name.encode()) > _MOST_BYTES:
-        raise UsageError(f"{name!r} is no name for a PLC: expected at most {_MOST_BYTES} bytes")
     return name
 
 

@@ -41,7 +41,7 @@ _MOST_NETWORKS = 1000
 
 
 @dataclass(frozen=True, slots=True)
-class Recorded:
+class RecordResult:
     """What became of a backup.
 
     Attributes:
@@ -98,14 +98,14 @@ def look(repository: Repository, name: str, backup: Backup) -> Look:
     return Look(newest, old, compare(old.program, backup.program))
 
 
-def unchanged(name: str, found: Look) -> Recorded:
+def unchanged(name: str, found: Look) -> RecordResult:
     """What is said of a program that the history holds already."""
-    return Recorded(name, None, f"{name}: unchanged", found.changes)
+    return RecordResult(name, None, f"{name}: unchanged", found.changes)
 
 
 def write(
     repository: Repository, name: str, backup: Backup, seen: Look | None, *, now: int, wait_s: float
-) -> Recorded:
+) -> RecordResult:
     """Record a backup that is another; the caller holds the right to write.
 
     Args:
@@ -142,7 +142,7 @@ def write(
         branch = Branch(repository.folder, repository.branch(), repository.rights)
         if move_branch(branch, new, still, wait_s=wait_s):
             repository.is_now(Newest(new, tree.items()))
-            return Recorded(name, new, subject, found.changes, found.warnings)
+            return RecordResult(name, new, subject, found.changes, found.warnings)
 
 
 def _networks(old: Backup | None, new: Backup) -> Sequence[NetworkChange] | None:

@@ -15,8 +15,9 @@
 
 ::
 
-    entries   the keys, their values, the names          lines   at which line a key stands
-    find      which file is the inventory                select  which PLCs are meant
+    find      which file is the inventory         values   the value of each key
+    load      an inventory, read from its file    lines    the line of each key
+    entries   from TOML to PLCs and faults        select   the PLCs that --select names
     add       one more PLC at the end of the file
 
 Paths are relative to the file's folder. There are no secrets in it, as these PLCs know none.

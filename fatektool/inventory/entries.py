@@ -8,27 +8,23 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 from difflib import get_close_matches
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 from fatektool.connection import CODECS, usual_format
 from fatektool.errors import DataError, UsageError
 from fatektool.files.plain_text import plain_text
+from fatektool.files.portable_name import is_portable_name
 from fatektool.files.strict_toml import read_toml
-from fatektool.inventory.find import EXPECTATIONS
 from fatektool.inventory.lines import key_lines, line_of
+from fatektool.inventory.values import CHECKS
 from fatektool.protocol.codec import require_station
-from fatektool.transport.base import LineSettings
-from fatektool.transport.target import Target, TargetKind
+from fatektool.transport.target import Target
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from collections.abc import Set as AbstractSet
+    from pathlib import Path
 
     from fatektool.inventory.lines import KeyPath
-
-_NAME: Final = re.compile(r"\w[\w.-]{0,63}")
-_DEVICE: Final = re.compile(r"(?:COM|LPT)\d+|CON|PRN|AUX|NUL", re.ASCII | re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +67,7 @@ class PlcEntry:
 
 
 @dataclass(frozen=True, slots=True)
-class Fault:
+class InventoryFault:
     """Something in the file that does not hold.
 
     Attributes:
@@ -98,7 +94,7 @@ class Inventory:
 
     file: Path
     plcs: dict[str, PlcEntry] = field(default_factory=dict)
-    faults: list[Fault] = field(default_factory=list)
+    faults: list[InventoryFault] = field(default_factory=list)
 
     def require_whole(self) -> None:
         """Raise DataError if there is a fault; all of them are in its details."""
@@ -141,11 +137,11 @@ def parse_inventory(data: bytes, file: Path) -> Inventory:
     except ValueError as error:  # UnicodeDecodeError and TOMLDecodeError among them
         place = re.search(r" \(at line (\d+), column \d+\)$", str(error))
         told = str(error)[: place.start()] if place else str(error)
-        return Inventory(file, faults=[Fault(int(place[1]) if place else None, f"no TOML: {told}")])
-    return _Reader(Inventory(file), lines).read(document)
+        return Inventory(file, faults=[InventoryFault(int(place[1]) if place else None, f"no TOML: {told}")])
+    return _TableReader(Inventory(file), lines).read(document)
 
 
-class _Reader:
+class _TableReader:
     """Takes a document apart, and notes what does not hold."""
 
     def __init__(self, inventory: Inventory, lines: dict[KeyPath, int]) -> None:
@@ -157,7 +153,7 @@ class _Reader:
             if key not in {"defaults", "plc"}:
                 self._fault("expected [defaults] and [plc.NAME] tables", key, got=key)
         defaults = self._table(
-            document.get("defaults", {}), ("defaults",), _CHECKS.keys() - {"reference", "project"}
+            document.get("defaults", {}), ("defaults",), CHECKS.keys() - {"reference", "project"}
         )
         plcs = document.get("plc", {})
         if not isinstance(plcs, dict):
@@ -170,7 +166,7 @@ class _Reader:
 
     def _plc(self, name: str, table: object, defaults: dict[str, Any]) -> None:
         faults = len(self._found.faults)
-        if not _NAME.fullmatch(name) or _DEVICE.fullmatch(name.partition(".")[0]) or len(name.encode()) > 250:
+        if not is_portable_name(name):
             self._fault(
                 f"a PLC's name: expected up to 64 letters, digits, '_', '-' and '.', and no port's name, "
                 f"got {name!r}",
@@ -180,7 +176,7 @@ class _Reader:
         twin = next((other for other in self._found.plcs if other.lower() == name.lower()), None)
         if twin is not None:
             self._fault(f"{name!r} and {twin!r} would share files: expected another name", "plc", name)
-        values = defaults | self._table(table, ("plc", name), _CHECKS.keys())
+        values = defaults | self._table(table, ("plc", name), CHECKS.keys())
         if "target" not in values and isinstance(table, dict) and "target" not in table:
             self._fault(f'{name}: expected target = "tcp://HOST" or another', "plc", name)
         protocol = values.get("protocol", "facon")
@@ -214,7 +210,7 @@ class _Reader:
                 )
                 self._fault(f"{'.'.join(path)}: unknown key {key!r}: {known}", *path, key)
                 continue
-            words, take = _CHECKS[key]
+            words, take = CHECKS[key]
             try:
                 found[key] = take(value, self._found.file.parent)
             except (ValueError, TypeError, UsageError) as error:
@@ -225,100 +221,7 @@ class _Reader:
 
     def _fault(self, message: str, *path: str, got: str = "") -> None:
         told = f"{message}, got {got!r}" if got else message
-        self._found.faults.append(Fault(line_of(self._lines, *path), told))
-
-
-# --- what a value may be: each taker gives it as a PLC has it, or raises ValueError or UsageError ----------
-
-
-def _text(value: object, _: Path) -> str:
-    if not isinstance(value, str) or not value or not value.isprintable():
-        raise ValueError
-    return value
-
-
-def _target(value: object, folder: Path) -> str:
-    """A target, its path relative to the file's folder."""
-    target = Target.parse(_text(value, folder))
-    if target.kind is TargetKind.SIM and target.path:
-        return f"sim:{folder / target.path}"
-    if target.kind is TargetKind.SERIAL and not target.is_url and "/" in target.path:
-        return str(folder / target.path)
-    return target.text
-
-
-def _path(value: object, folder: Path) -> Path:
-    try:
-        return folder / Path(_text(value, folder)).expanduser()
-    except RuntimeError as error:  # ~somebody, whom this computer does not know
-        raise ValueError from error
-
-
-def _tags(value: object, folder: Path) -> tuple[str, ...]:
-    return tuple(_text(tag, folder) for tag in ([value] if isinstance(value, str) else _list(value)))
-
-
-def _list(value: object) -> list[object]:
-    if not isinstance(value, list):
-        raise TypeError
-    return value
-
-
-def _whole(first: int, last: int) -> Callable[[object, Path], int]:
-    def take(value: object, _: Path) -> int:
-        if type(value) is not int or not first <= value <= last:
-            raise ValueError
-        return value
-
-    return take
-
-
-def _seconds(first: float, last: float) -> Callable[[object, Path], float]:
-    def take(value: object, _: Path) -> float:
-        number = isinstance(value, int | float) and not isinstance(value, bool)
-        if not number or not first <= value <= last:  # type: ignore[operator]  # a number, as was looked at
-            raise ValueError
-        return float(value)  # type: ignore[arg-type]  # the same
-
-    return take
-
-
-def _one_of(words: tuple[str, ...]) -> Callable[[object, Path], str]:
-    def take(value: object, _: Path) -> str:
-        if value not in words:
-            raise ValueError
-        return str(value)
-
-    return take
-
-
-def _flag(value: object, _: Path) -> bool:
-    if not isinstance(value, bool):
-        raise TypeError
-    return value
-
-
-def _format(value: object, folder: Path) -> str:
-    return LineSettings(format=_text(value, folder).upper()).format
-
-
-_PROTOCOLS: Final = tuple(CODECS)
-_CHECKS: Final[dict[str, tuple[str, Callable[[object, Path], Any]]]] = {
-    "target": ("a text such as tcp://192.168.2.3 or /dev/ttyUSB0", _target),
-    "station": ("a whole number of 1 to 254, with modbus-tcp 0 or 255 too", _whole(0, 255)),
-    "protocol": (f"one of {', '.join(_PROTOCOLS)}", _one_of(_PROTOCOLS)),
-    "baud": ("a whole number of 50 to 4000000", _whole(50, 4_000_000)),
-    "format": ("a text such as 7E1", _format),
-    "timeout_s": ("seconds, 0.001 to 3600", _seconds(0.001, 3600)),
-    "retries": ("a whole number of 0 to 1000", _whole(0, 1000)),
-    "lock_wait_s": ("seconds, 0 to 86400", _seconds(0, 86400)),
-    "tags": ("a list of texts", _tags),
-    "spec": ("the name of a file", _path),
-    "reference": ("the name of a file", _path),
-    "project": ("the name of a file", _path),
-    "read_only": ("true or false", _flag),
-    "expect": (f"one of {', '.join(EXPECTATIONS)}", _one_of(EXPECTATIONS)),
-}
+        self._found.faults.append(InventoryFault(line_of(self._lines, *path), told))
 
 
 def _short(value: object) -> str:

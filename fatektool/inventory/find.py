@@ -11,13 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from fatektool.inventory.entries import Inventory
-
 FILE_NAME: Final = "fatek.toml"
-EXPECTATIONS: Final = ("run", "stop", "any")
-"""The modes that a PLC may be expected to be in."""
-
-_MAX_FILE: Final = 16 << 20
 _NO_NAME: Final = re.compile(r"COM\d+|.*[:/\\\0].*", re.ASCII | re.IGNORECASE | re.DOTALL)
 
 
@@ -34,19 +28,6 @@ def find_inventory(named: Path | None, places: Iterable[Path]) -> Path | None:
         places: where one may lie.
     """
     return named or next((place for place in places if place.is_file()), None)
-
-
-def load_inventory(path: Path) -> Inventory:
-    """Read an inventory, and whatever is wrong with it.
-
-    Raises:
-        UsageError: there is no such file.
-        DataError: it is far too large.
-    """
-    from fatektool.files.atomic import read_bounded
-    from fatektool.inventory.entries import parse_inventory
-
-    return parse_inventory(read_bounded(path, _MAX_FILE), path)
 
 
 def no_inventory() -> UsageError:

@@ -7,7 +7,7 @@ import subprocess
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from fatektool.history.history import History, Recorded
+from fatektool.history.history import History, RecordResult
 from tests.program.samples import backup, changed, program
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ class Book:
         self.now = NOON
         self.history = History(folder, wait_s=0.0, clock=lambda: self.now)
 
-    def record(self, name: str, *backups: Backup) -> list[Recorded]:
+    def record(self, name: str, *backups: Backup) -> list[RecordResult]:
         """Record these, one a day."""
         found = []
         for each in backups:

@@ -16,7 +16,7 @@ from fatektool.cli.shared.options import PATH, Connection, Seconds, connection_o
 from fatektool.cli.shared.pairs import apart, together
 from fatektool.cli.shared.unfinished import unfinished_document
 from fatektool.errors import FatektoolError, UsageError
-from fatektool.inventory.find import EXPECTATIONS
+from fatektool.inventory.values import EXPECTATIONS
 from fatektool.jobs.fleet.check import Checked, State, check_backup, check_plc, parse_age
 from fatektool.jobs.progress import Progress, no_progress
 from fatektool.transport.limit import Limit

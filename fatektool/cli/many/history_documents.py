@@ -13,14 +13,16 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from fatektool.history.checking import Checked, Fault
-    from fatektool.history.history import Change, Recorded, Stored
+    from fatektool.history.checking import Damage, HistoryCheck
+    from fatektool.history.history import LogEntry, RecordResult, Stored
     from fatektool.history.push import Pushed
     from fatektool.ladder.differences import NetworkChange
     from fatektool.program.archive import Backup
 
 
-def record_document(found: Recorded, backup: Backup, folder: Path, pushed: Pushed | None) -> dict[str, Any]:
+def record_document(
+    found: RecordResult, backup: Backup, folder: Path, pushed: Pushed | None
+) -> dict[str, Any]:
     """``fatektool.history-record/1``."""
     changes = found.changes
     return {
@@ -40,7 +42,7 @@ def record_document(found: Recorded, backup: Backup, folder: Path, pushed: Pushe
     }
 
 
-def record_rows(found: Recorded, folder: Path, pushed: Pushed | None) -> Iterator[tuple[str, object]]:
+def record_rows(found: RecordResult, folder: Path, pushed: Pushed | None) -> Iterator[tuple[str, object]]:
     """What became of a backup."""
     if found.revision is None:
         yield "unchanged", f"{found.name}: {folder} holds this program already"
@@ -51,7 +53,7 @@ def record_rows(found: Recorded, folder: Path, pushed: Pushed | None) -> Iterato
         yield "pushed", pushed.remote if pushed.sent else f"{pushed.remote} has it all already"
 
 
-def log_document(found: Sequence[Change], folder: Path, name: str | None, *, more: bool) -> dict[str, Any]:
+def log_document(found: Sequence[LogEntry], folder: Path, name: str | None, *, more: bool) -> dict[str, Any]:
     """``fatektool.history-log/1``."""
     return {
         "schema": "fatektool.history-log/1",
@@ -72,7 +74,7 @@ def log_document(found: Sequence[Change], folder: Path, name: str | None, *, mor
     }
 
 
-def log_line(change: Change) -> str:
+def log_line(change: LogEntry) -> str:
     """One change; a commit that somebody else made is told with the PLC's name."""
     subject = change.commit.subject
     named = subject if subject.startswith(f"{change.name}: ") else f"{change.name}: {subject}"
@@ -115,7 +117,7 @@ def _where(found: Stored, folder: Path) -> dict[str, Any]:
     }
 
 
-def check_document(found: Checked, folder: Path) -> dict[str, Any]:
+def check_document(found: HistoryCheck, folder: Path) -> dict[str, Any]:
     """``fatektool.history-check/1``."""
     return {
         "schema": "fatektool.history-check/1",
@@ -132,7 +134,7 @@ def check_document(found: Checked, folder: Path) -> dict[str, Any]:
     }
 
 
-def check_lines(found: Checked) -> Iterator[str]:
+def check_lines(found: HistoryCheck) -> Iterator[str]:
     """What was looked through, and what does not hold."""
     commits, programs = count(found.commits, "commit"), count(found.programs, "program")
     looked = f"{commits}, {programs}, {count(len(found.names), 'PLC')} now"
@@ -143,7 +145,7 @@ def check_lines(found: Checked) -> Iterator[str]:
         yield f"  {_place(fault)}{fault.message}"
 
 
-def _place(fault: Fault) -> str:
+def _place(fault: Damage) -> str:
     if fault.revision is None:
         return ""
     return f"{fault.name}@{fault.revision[:SHORT]}: " if fault.name else f"{fault.revision[:SHORT]}: "

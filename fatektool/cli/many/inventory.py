@@ -14,8 +14,9 @@ from fatektool.cli.shared.pairs import apart
 from fatektool.errors import DataError, FatektoolError, UsageError
 from fatektool.files.atomic import read_bounded, write_whole
 from fatektool.inventory.add import with_plc
-from fatektool.inventory.entries import Fault
-from fatektool.inventory.find import FILE_NAME, load_inventory, no_inventory
+from fatektool.inventory.entries import InventoryFault
+from fatektool.inventory.find import FILE_NAME, no_inventory
+from fatektool.inventory.load import MAX_INVENTORY, load_inventory
 from fatektool.inventory.select import select
 
 if TYPE_CHECKING:
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     from fatektool.inventory.entries import Inventory, PlcEntry
 
 _MAX_SCAN: Final = 4 << 20
-_MAX_FILE: Final = 16 << 20
 
 
 @click.group("inventory", epilog="Example: fatektool inventory add press -p tcp://192.168.2.3 --tag night")
@@ -57,7 +57,7 @@ def check_command(inventory: Path | None, voice: Voice) -> int:
     return 1 if found.faults else 0
 
 
-def _faults_of_files(found: Inventory) -> Iterator[Fault]:
+def _faults_of_files(found: Inventory) -> Iterator[InventoryFault]:
     """What is wrong with the files that the PLCs name; each file is told of once."""
     from fatektool.jobs.snapshots.spec import MAX_SPEC, parse_spec
     from fatektool.project.program_file import load_program
@@ -74,7 +74,7 @@ def _faults_of_files(found: Inventory) -> Iterator[Fault]:
                 else:
                     load_program(path)
             except FatektoolError as error:
-                yield Fault(None, f"plc.{entry.name}: {key}: {error.message}")
+                yield InventoryFault(None, f"plc.{entry.name}: {key}: {error.message}")
 
 
 @inventory_command.command("list", epilog="Example: fatektool inventory list --select night")
@@ -154,7 +154,7 @@ def add_command(
     inventory one is begun in the present folder. A station of a scan that has a name already is left out.
     """
     path = inventory_path(inventory) or Path(FILE_NAME)
-    data = read_bounded(path, _MAX_FILE) if path.exists() else b""
+    data = read_bounded(path, MAX_INVENTORY) if path.exists() else b""
     options = {"station": station, "protocol": protocol, "baud": baud, "format": line_format}
     given = {key: value for key, value in options.items() if value is not None}
     if scan is not None:

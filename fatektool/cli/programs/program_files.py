@@ -10,7 +10,6 @@ from fatektool.cli.shared.inventory_file import inventory_path
 from fatektool.cli.shared.options import PATH
 from fatektool.cli.shared.pairs import together
 from fatektool.errors import DataError, FatektoolError
-from fatektool.inventory.find import load_inventory
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -125,6 +124,8 @@ def comments_beside(
 
 def _project_of(backup: Backup, inventory: Path | None, voice: Voice) -> Path | None:
     """The inventory's project for the PLC that a backup came from, if it is the only one there."""
+    from fatektool.inventory.load import load_inventory
+
     path = inventory_path(inventory)
     if path is None:
         return None

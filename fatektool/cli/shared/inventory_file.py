@@ -9,7 +9,7 @@ import click
 
 from fatektool.cli.shared.file_path import FilePath
 from fatektool.errors import FatektoolError
-from fatektool.inventory.find import FILE_NAME, find_inventory, load_inventory, may_be_name, no_inventory
+from fatektool.inventory.find import FILE_NAME, find_inventory, may_be_name, no_inventory
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -48,6 +48,12 @@ def open_inventory(named: Path | None) -> Inventory:
     path = inventory_path(named)
     if path is None:
         raise no_inventory()
+    return _whole(path)
+
+
+def _whole(path: Path) -> Inventory:
+    from fatektool.inventory.load import load_inventory
+
     found = load_inventory(path)
     found.require_whole()
     return found
@@ -65,8 +71,7 @@ def plc_named(word: str, named: Path | None) -> PlcEntry | None:
     path = inventory_path(named)
     if path is None:
         return None
-    found = load_inventory(path)
-    found.require_whole()
+    found = _whole(path)
     if word not in found.plcs and os.path.lexists(word):
         return None
     return found.named(word)
@@ -86,6 +91,8 @@ def complete_target(context: click.Context, _: click.Parameter, incomplete: str)
 def complete_names(named: Path | None, incomplete: str) -> list[CompletionItem]:
     """The names that begin so, with what they stand for; none if the inventory cannot be read."""
     from click.shell_completion import CompletionItem
+
+    from fatektool.inventory.load import load_inventory
 
     try:
         path = inventory_path(named)
