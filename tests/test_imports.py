@@ -155,23 +155,10 @@ def test_no_file_is_in_a_circle() -> None:
 
 
 COMMANDS_BY_COMMANDS: set[tuple[str, str]] = {
-    ("elements.discrete", "elements.read"),
-    ("elements.snapshot", "elements.read"),
-    ("elements.snapshot_apply", "elements.read"),
-    ("elements.watch", "elements.read"),
-    ("elements.watch", "elements.snapshot"),
-    ("elements.write", "elements.read"),
-    ("line.link.modem", "elements.read"),
     ("line.link.modem", "line.link.ports"),
-    ("line.link.ports", "elements.read"),
     ("line.link.ports", "line.link.result"),
     ("line.link.table", "line.link.result"),
-    ("line.link.table_write", "elements.read"),
     ("many.fleet.check", "many.check"),
-    ("many.history", "programs.backup"),
-    ("many.history", "programs.diff"),
-    ("many.history", "programs.inspect"),
-    ("programs.inspect", "programs.backup"),
 }
 """Still to be untied: this may only shrink."""
 

@@ -81,14 +81,19 @@ def decode(raw: int, kind: ValueType, bits: int) -> Value:
                 raise DataError(f"{raw:08X} is no number as f32")
             return number
         case ValueType.BCD:
-            digits = f"{raw:0{bits // 4}X}"
+            digits = raw_text(raw, bits)
             if not digits.isdecimal():
                 raise DataError(f"{digits} is no BCD number")
             return int(digits)
         case ValueType.HEX:
-            return f"{raw:0{bits // 4}X}"
+            return raw_text(raw, bits)
         case _:
             return raw
+
+
+def raw_text(raw: int, bits: int) -> str:
+    """Raw bits in hex, a digit for each four; 0 or 1 for a discrete."""
+    return f"{raw:0{max(1, bits // 4)}X}"
 
 
 def encode(text: str, kind: ValueType | None, bits: int) -> int:

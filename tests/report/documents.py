@@ -6,7 +6,7 @@ import math
 from random import Random
 from typing import Any
 
-from fatektool.cli.shared.documents import program_differences
+from fatektool.cli.programs.documents import program_differences
 from fatektool.program.image import Program
 from fatektool.project.comparison import compare_programs
 from fatektool.report.loopback import loopback_report

@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import click
 
-from fatektool.cli.elements.read import SELECTION, shown, warn_of
+from fatektool.cli.elements.documents import snapshot_diff_document
+from fatektool.cli.elements.selection import selected, spec_options
 from fatektool.cli.elements.snapshot_apply import apply_command
+from fatektool.cli.elements.values import SELECTION, shown, warn_of
 from fatektool.cli.programs.program_files import comments_for, comments_options
 from fatektool.cli.shared.file_path import standard
 from fatektool.cli.shared.modbus_map import modbus_map_option
@@ -20,13 +22,11 @@ from fatektool.cli.shared.options import PATH, Connection, connection_options_bu
 from fatektool.cli.shared.places import require_folder_for, require_free
 from fatektool.cli.shared.report import report_option, write_snapshot_report
 from fatektool.errors import PlcError, UsageError
-from fatektool.files.atomic import read_bounded, write_whole
-from fatektool.jobs.elements.selection import parse_items
+from fatektool.files.atomic import write_whole
 from fatektool.jobs.snapshots.comments import snapshot_with_comments
 from fatektool.jobs.snapshots.compare import Change, compare_snapshots
 from fatektool.jobs.snapshots.formats import FORMATS, SUFFIXES, as_json, as_ndjson, as_prometheus
 from fatektool.jobs.snapshots.snapshot import load_snapshot, take_all, take_snapshot
-from fatektool.jobs.snapshots.spec import MAX_SPEC, Spec, items_of, parse_spec
 from fatektool.jobs.snapshots.store import Keep, append_line, encoded, require_lines, save_dated
 from fatektool.protocol.commands import Command
 
@@ -93,8 +93,7 @@ def snapshot_command() -> None:
     help=f"Read data from the PLC, in the fewest bytes.\n\n{SELECTION}",
 )
 @click.argument("elements", nargs=-1)
-@click.option("--spec", type=PATH, metavar="FILE.toml", help="What to read, with names, scales and units.")
-@click.option("--group", "groups", multiple=True, help="Only items of this group of --spec; repeat for more.")
+@spec_options
 @click.option("--all", "whole", is_flag=True, help="All that the PLC says it has.")
 @click.option(
     "-o",
@@ -210,17 +209,6 @@ def _form(form: str | None, voice: Voice, output: str | None, append: Path | Non
     return form or of_name or "json"
 
 
-def selected(elements: tuple[str, ...], spec: Path | None, groups: tuple[str, ...], *, whole: bool) -> Spec:
-    """The items that the options name; for ``--all`` none yet, as the PLC must be asked."""
-    if sum((bool(elements), spec is not None, whole)) != 1:
-        raise UsageError("expected one of: ELEMENTS, --spec FILE.toml, --all")
-    if groups and spec is None:
-        raise UsageError("--group goes with --spec")
-    if spec is not None:
-        return parse_spec(read_bounded(spec, MAX_SPEC), str(spec), groups)
-    return Spec(items_of(parse_items(elements)))
-
-
 def _require_places(
     output: str | None, folder: Path | None, append: Path | None, kept: Keep | None, voice: Voice
 ) -> None:
@@ -272,13 +260,7 @@ def diff_command(a: Path, b: Path, voice: Voice, *, ignore: tuple[str, ...], tol
         raise UsageError("--tolerance nan: expected a number from 0")
     one, other = load_snapshot(a, voice.warn), load_snapshot(b, voice.warn)
     changes = compare_snapshots(one, other, ignore=ignore, tolerance=tolerance)
-    document = {
-        "schema": "fatektool.snapshot-diff/1",
-        "a": {"file": str(a), "time": one.time},
-        "b": {"file": str(b), "time": other.time},
-        "same": not changes,
-        "changes": [{"key": change.key, "a": change.a, "b": change.b} for change in changes],
-    }
+    document = snapshot_diff_document((a, one), (b, other), changes)
     voice.show(document, _change_lines(changes))
     return 1 if changes else 0
 
@@ -289,7 +271,7 @@ def _change_lines(changes: list[Change]) -> Iterator[str]:
     width = max((len(change.key) for change in changes), default=0)
     for change in changes:
         one, other = (
-            "(not there)" if change.absent == side else shown(value, "no value")
+            "(not there)" if change.absent == side else shown(value, "- (no value)")
             for side, value in (("a", change.a), ("b", change.b))
         )
         yield f"{change.key:<{width}}  {one} -> {other}"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fatektool.cli.elements.read import shown, warn_of
+from fatektool.cli.elements.values import shown, warn_of
 from fatektool.cli.shared.addressee import Origin, Pace, look
 from fatektool.cli.shared.documents import where
 from fatektool.cli.shared.modbus_map import modbus_map_option
@@ -21,6 +21,7 @@ from fatektool.jobs.elements.reads import named
 from fatektool.jobs.snapshots.apply import ApplyPlan, apply_plan, plan_apply
 from fatektool.jobs.snapshots.snapshot import load_snapshot
 from fatektool.planner import plan_writes
+from fatektool.protocol.values import raw_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -103,8 +104,7 @@ def apply_command(
 
 
 def _did_not(each: NotTaken) -> str:
-    digits = max(1, each.element.kind.bits // 4)
-    return each.words(lambda raw: f"{raw:0{digits}X}", str(each.element))
+    return each.words(lambda raw: raw_text(raw, each.element.kind.bits), str(each.element))
 
 
 def _warn(plan: ApplyPlan, voice: Voice) -> None:
@@ -123,7 +123,7 @@ def _plan_lines(plan: ApplyPlan, snapshot: Snapshot) -> Iterator[str]:
     width = max((len(key) for key, *_ in plan.changes), default=0)
     for key, *_ in plan.changes:
         before, after = plan.present.values[key], snapshot.values[key]
-        yield f"{key:<{width}}  {shown(before, None)} -> {shown(after, None)}"
+        yield f"{key:<{width}}  {shown(before)} -> {shown(after)}"
 
 
 def _result_lines(

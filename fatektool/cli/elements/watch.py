@@ -10,17 +10,19 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from fatektool.cli.elements.read import SELECTION, commented, shown
-from fatektool.cli.elements.snapshot import selected
+from fatektool.cli.elements.documents import watch_document
+from fatektool.cli.elements.selection import selected, spec_options
+from fatektool.cli.elements.values import SELECTION, shown
 from fatektool.cli.programs.program_files import comments_for, comments_options
 from fatektool.cli.shared.documents import error_document
 from fatektool.cli.shared.modbus_map import modbus_map_option
-from fatektool.cli.shared.options import PATH, Connection, Seconds, connection_options
+from fatektool.cli.shared.options import Connection, Seconds, connection_options
 from fatektool.cli.shared.output import tell
 from fatektool.cli.shared.report import report_option, watch_report
 from fatektool.cli.shared.streams import reader_is_gone
 from fatektool.errors import FatektoolError, LineError, PlcError, TransportClosed
 from fatektool.files.times import utc
+from fatektool.jobs.elements.items import comments_of
 from fatektool.jobs.snapshots.snapshot import Snapshot, take_snapshot
 
 if TYPE_CHECKING:
@@ -49,8 +51,7 @@ _AROUND: Final = 4  # title, header, what is left out, and the line of the curso
     f"{SELECTION}",
 )
 @click.argument("elements", nargs=-1)
-@click.option("--spec", type=PATH, metavar="FILE.toml", help="What to read, with names, scales and units.")
-@click.option("--group", "groups", multiple=True, help="Only items of this group of --spec; repeat for more.")
+@spec_options
 @click.option(
     "--interval",
     type=Seconds(0, 86400),
@@ -76,8 +77,8 @@ def watch_command(
     encoding: str | None,
 ) -> int:
     """Show values live."""
-    wanted = selected(elements, spec, groups, whole=False)
-    texts = commented(
+    wanted = selected(elements, spec, groups)
+    texts = comments_of(
         [item.item for item in wanted.items], comments_for(connection, comments, voice, encoding)
     )
     pace_s = next((pace for pace in (interval, wanted.interval_s) if pace is not None), 1.0)
@@ -107,7 +108,7 @@ def _lines(rounds: Iterator[Snapshot], comments: Mapping[str, str]) -> Snapshot 
     """Print a line a round; give the last."""
     snapshot = None
     for snapshot in rounds:
-        click.echo(json.dumps(_document(snapshot, comments), allow_nan=False))
+        click.echo(json.dumps(watch_document(snapshot, comments), allow_nan=False))
         sys.stdout.flush()
         if reader_is_gone():
             break
@@ -157,22 +158,6 @@ def _rounds(
         due = max(due + interval_s, time.monotonic())
         if count is None or done < count:
             plc.lend(max(0.0, due - time.monotonic()), broken=broken)
-
-
-def _document(snapshot: Snapshot, comments: Mapping[str, str]) -> dict[str, Any]:
-    document: dict[str, Any] = {
-        "schema": "fatektool.watch/1",
-        "time": snapshot.time,
-        "target": snapshot.target,
-        "station": snapshot.station,
-        "protocol": snapshot.protocol,
-        "running": snapshot.running,
-        "duration_s": snapshot.duration_s,
-        "values": snapshot.values,
-        "errors": snapshot.errors,
-        "not_asked": snapshot.not_asked,
-    }
-    return document | ({"comments": comments} if comments else {})
 
 
 def _live(rounds: Iterator[Snapshot], items: list[SpecItem], comments: Mapping[str, str]) -> Snapshot | None:
@@ -226,13 +211,13 @@ def _table(
     units = (
         max(4, *(len(str(part.get("unit", ""))) for part in snapshot.elements.values())) if with_units else 0
     )
-    values = max(_VALUE, *(len(shown(value, None)) + 1 for value in snapshot.values.values()))
+    values = max(_VALUE, *(len(shown(value)) + 1 for value in snapshot.values.values()))
     widest = max(map(len, comments.values()), default=0)
     remarks = min(max(_VALUE, widest), columns // 4) if comments else 0
     fits = max(1, columns - names - values - units - remarks - _GAPS - bool(comments))
     room = max(1, lines - _AROUND)
     for key, value in list(snapshot.values.items())[:room]:
-        text = Text(shown(value, None))
+        text = Text(shown(value))
         if key in before and before[key] != value:
             text = Text.assemble((text.plain, "bold reverse"), "*")
         else:

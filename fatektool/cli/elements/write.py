@@ -6,18 +6,18 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fatektool.cli.elements.read import shown, warn_of
+from fatektool.cli.elements.documents import write_document
+from fatektool.cli.elements.values import shown, warn_of
 from fatektool.cli.shared.addressee import look
 from fatektool.cli.shared.broadcast import broadcast_option, means_all, send_to_all
-from fatektool.cli.shared.documents import where
 from fatektool.cli.shared.modbus_map import modbus_map_option
 from fatektool.cli.shared.options import Connection, connection_options, yes_option
 from fatektool.connection import codec_named
-from fatektool.errors import DataError, LineError, PlcBusy, PlcError
+from fatektool.errors import LineError, PlcBusy, PlcError
 from fatektool.jobs.elements.assignment import parse_assignments
+from fatektool.jobs.elements.items import value_of
 from fatektool.jobs.elements.writes import write_elements
 from fatektool.planner import plan_writes
-from fatektool.protocol.values import Value, decode
 
 if TYPE_CHECKING:
     from fatektool.cli.shared.output import Voice
@@ -48,7 +48,7 @@ def write_command(
         requests = plan_writes([(item.element, raw) for item, raw in pairs], codec_named(connection.protocol))
         send_to_all(connection, voice, "write", requests, yes=yes)
         return 0
-    by_element = {item.element: item for item, _ in pairs}
+    items = {item.element: item for item, _ in pairs}
     with connection.open(voice, writes=True) as plc:
         try:
             failed = write_elements(plc, [(item.element, raw) for item, raw in pairs])
@@ -57,28 +57,12 @@ def write_command(
                 left = _left(len(pairs))
                 error.hint = f"{error.hint}; {left}" if error.hint else left
             raise
-        not_taken = [
-            {
-                "element": by_element[each.element].key,
-                "wanted": _value(by_element[each.element], each.wanted),
-                "got": _value(by_element[each.element], each.got),
-                "reason": each.reason,
-            }
-            for each in failed
-        ]
         here = look(plc)
-        document = {
-            "schema": "fatektool.write/1",
-            **where(plc),
-            **here.document(),
-            "written": len(pairs) - len(failed),
-            "not_taken": not_taken,
-        }
+        document = write_document(plc, here, items, failed)
     taken = len(pairs) - len(failed)
     lines = [f"{taken} of {len(pairs)} elements written and read back", here.line]
     voice.show(document, lines)
-    told = {by_element[each.element].key: _told(by_element[each.element], each) for each in failed}
-    warn_of(told, voice)
+    warn_of({items[each.element].key: _words(items[each.element], each) for each in failed}, voice)
     return PlcError.exit_code if failed else 0
 
 
@@ -89,14 +73,5 @@ def _left(count: int) -> str:
     return f"some of the {count} values may be written: read them, or write them again"
 
 
-def _told(item: Item, each: NotTaken) -> str:
-    return each.words(lambda raw: shown(_value(item, raw), None))
-
-
-def _value(item: Item, raw: int | None) -> Value | None:
-    if raw is None:
-        return None
-    try:
-        return decode(raw, item.type, item.element.kind.bits)
-    except DataError:
-        return f"{raw:X}"
+def _words(item: Item, each: NotTaken) -> str:
+    return each.words(lambda raw: shown(value_of(item, raw)))

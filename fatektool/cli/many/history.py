@@ -19,10 +19,9 @@ from fatektool.cli.many.history_documents import (
     record_rows,
     show_document,
 )
-from fatektool.cli.programs.backup import STDOUT
-from fatektool.cli.programs.diff import show_difference
-from fatektool.cli.programs.differences import change_lines
-from fatektool.cli.programs.inspect import backup_rows
+from fatektool.cli.programs.differences import change_lines, show_differences
+from fatektool.cli.programs.file_view import backup_rows
+from fatektool.cli.shared.file_path import is_standard
 from fatektool.cli.shared.image_words import warn_of_image
 from fatektool.cli.shared.options import PATH, Seconds, voice_options
 from fatektool.cli.shared.output import table
@@ -170,7 +169,7 @@ def diff_command(name: str, a: str, b: str, folder: Path, voice: Voice, *, repor
     one, other = history.show(name, a), history.show(name, b)
     old, new = one.backup.program, other.backup.program
     sides = (one.label, old.sha256), (other.label, new.sha256)
-    return show_difference(*sides, compare_programs(old, new), voice, report)
+    return show_differences(*sides, compare_programs(old, new), voice, report)
 
 
 @history_command.command("check", epilog="Example: fatektool history check --history plc-history")
@@ -196,8 +195,8 @@ def export_command(which: str, file: Path, folder: Path, voice: Voice, *, force:
     """Write a PLC's backup, of now or of a revision, to FILE for 'restore'; - is standard output."""
     name, revision = _parted(which)
     history = History(folder)
-    together("force", holds=file != STDOUT, needs="a file")
-    if file == STDOUT:
+    together("force", holds=not is_standard(file), needs="a file")
+    if is_standard(file):
         print_bytes(history.show(name, revision).data)
         return
     require_place(file, overwrite=force)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from fatektool.cli.shared.documents import backup_summary, networks_document
+from fatektool.cli.programs.documents import backup_summary, networks_document
 from fatektool.files.times import utc
 from fatektool.history.messages import count
 from fatektool.history.revisions import SHORT

@@ -59,7 +59,7 @@ def check_command(inventory: Path | None, voice: Voice) -> int:
 
 def _faults_of_files(found: Inventory) -> Iterator[InventoryFault]:
     """What is wrong with the files that the PLCs name; each file is told of once."""
-    from fatektool.jobs.snapshots.spec import MAX_SPEC, parse_spec
+    from fatektool.jobs.snapshots.spec import load_spec
     from fatektool.project.program_file import load_program
 
     seen: set[Path] = set()
@@ -70,7 +70,7 @@ def _faults_of_files(found: Inventory) -> Iterator[InventoryFault]:
             seen.add(path)
             try:
                 if key == "spec":
-                    parse_spec(read_bounded(path, MAX_SPEC), str(path))
+                    load_spec(path)
                 else:
                     load_program(path)
             except FatektoolError as error:

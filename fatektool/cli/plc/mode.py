@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
+from fatektool.cli.plc.documents import mode_document
 from fatektool.cli.shared.addressee import agree, with_status
 from fatektool.cli.shared.broadcast import broadcast_option, means_all, send_to_all
-from fatektool.cli.shared.documents import where
 from fatektool.cli.shared.options import Connection, connection_options, yes_option
 from fatektool.errors import PlcError, PlcRefused
 from fatektool.protocol.commands import Command, RunStop
@@ -61,12 +61,6 @@ def _change(connection: Connection, voice: Voice, *, run: bool, broadcast: bool,
                 plc.run()
             else:
                 plc.stop()
-        document: dict[str, Any] = {
-            "schema": "fatektool.mode/1",
-            **where(plc),
-            "model": here.model,
-            "mode_before": "run" if before else "stop",
-            "mode_after": mode.lower(),
-        }
+        document = mode_document(plc, here, mode.lower())
     already = " already" if before == run else ""
     voice.show(document, [f"the PLC is in {mode}{already}", replace(here, running=None).line])

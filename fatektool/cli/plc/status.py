@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fatektool.cli.shared.documents import status_document
+from fatektool.cli.plc.documents import status_document
 from fatektool.cli.shared.options import Connection, connection_options
 from fatektool.cli.shared.output import Voice, table
 from fatektool.jobs.status import StatusReport, read_status

@@ -2,25 +2,24 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import click
 
-from fatektool.cli.shared.documents import saved_document
+from fatektool.cli.programs.documents import saved_document
+from fatektool.cli.programs.raw_file import require_raw_name
+from fatektool.cli.shared.file_path import is_standard
 from fatektool.cli.shared.image_words import warn_of_image
 from fatektool.cli.shared.options import PATH, Connection, connection_options
 from fatektool.cli.shared.output import Voice, table
 from fatektool.cli.shared.pairs import together
 from fatektool.cli.shared.streams import print_bytes
-from fatektool.errors import FatektoolError, UsageError
+from fatektool.errors import FatektoolError
 from fatektool.files.atomic import require_place, write_whole
 from fatektool.files.times import stamp, utc
 from fatektool.jobs.programs.backup import backup
 from fatektool.program.archive import Backup, save_backup
 from fatektool.protocol.commands import Command
-
-STDOUT = Path("-")
 
 
 @click.command("backup", epilog="Example: fatektool backup press.json -p /dev/ttyUSB0 -s 3")
@@ -46,10 +45,10 @@ def backup_command(
     Without FILE the name is made of station and time; - is standard output. The PLC may run.
     """
     path = file or Path(f"fatek-st{connection.station:02}-{stamp(utc())}.json")
-    together("force", holds=path != STDOUT or raw is not None, needs="a file")
+    together("force", holds=not is_standard(path) or raw is not None, needs="a file")
     require_raw_name(raw, path)
     for place in (path, raw):
-        if place is not None and place != STDOUT:
+        if place is not None and not is_standard(place):
             require_place(place, overwrite=force)
     with connection.open(voice, needs=(Command.READ_PAGE,)) as plc, voice.progress() as bar:
         clock = plc.link.transport.clock
@@ -59,11 +58,11 @@ def backup_command(
         counters = plc.link.counters
     voice.detail(f"line: {counters}")
     warn_of_image(found.program, voice)
-    if path != STDOUT:
+    if not is_standard(path):
         save_backup(found, path, overwrite=force)
     if raw is not None:
         _write_raw(raw, found, path, overwrite=force)
-    if path == STDOUT:
+    if is_standard(path):
         print_bytes(found.to_bytes())
         return
     program = found.program
@@ -82,18 +81,6 @@ def _write_raw(raw: Path, found: Backup, path: Path, *, overwrite: bool) -> None
     try:
         write_whole(raw, found.program.data, overwrite=overwrite)
     except FatektoolError as error:
-        if path != STDOUT:
+        if not is_standard(path):
             error.message = f"{path} is saved, but the bare pages are not: {error.message}"
         raise
-
-
-def require_raw_name(raw: Path | None, file: Path) -> None:
-    """Check that ``--raw`` names a file, and not the one that holds the backup.
-
-    Raises:
-        UsageError: it does not.
-    """
-    if raw == STDOUT:
-        raise UsageError("--raw -: standard output has other uses here, expected a file name")
-    if raw is not None and os.path.realpath(raw) == os.path.realpath(file):
-        raise UsageError(f"{raw} is named twice: expected another name for --raw")

@@ -6,28 +6,22 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fatektool.cli.programs.differences import program_lines
+from fatektool.cli.programs.differences import show_differences
 from fatektool.cli.programs.program_files import (
     comments_from,
     comments_options,
     program_file,
     require_comments,
 )
-from fatektool.cli.shared.documents import program_differences
+from fatektool.cli.shared.file_path import is_standard
 from fatektool.cli.shared.options import PATH, voice_options
-from fatektool.cli.shared.report import report_option, write_report
+from fatektool.cli.shared.report import report_option
 from fatektool.errors import UsageError
-from fatektool.files.times import utc
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
     from pathlib import Path
 
     from fatektool.cli.shared.output import Voice
-    from fatektool.project.comparison import ProgramComparison
-
-
-STDIN = "-"
 
 
 @click.command("diff", epilog="Example: fatektool diff monday.json tuesday.json")
@@ -45,38 +39,11 @@ def diff_command(
     """
     from fatektool.project.comparison import compare_files
 
-    if str(a) == str(b) == STDIN:
+    if is_standard(a) and is_standard(b):
         raise UsageError("standard input holds one program: expected - for one of the two")
     one, other = program_file(a, voice, encoding), program_file(b, voice, encoding)
     require_comments(comments, one, other)
     named = comments_from(comments, voice, encoding)
     texts = {**other.element_comments, **one.element_comments} if named is None else named.elements
     sides = (str(a), one.sha256), (str(b), other.sha256)
-    return show_difference(*sides, compare_files(one, other), voice, report, comments=texts)
-
-
-def show_difference(
-    a: tuple[str, str],
-    b: tuple[str, str],
-    found: ProgramComparison,
-    voice: Voice,
-    report: Path | None = None,
-    *,
-    comments: Mapping[str, str] | None = None,
-) -> int:
-    """Print what differs between two programs, each with its name and its hash; give the exit code."""
-    (a_name, a_hash), (b_name, b_hash) = a, b
-    document = {
-        "schema": "fatektool.diff/1",
-        "a": {"file": a_name, "sha256": a_hash},
-        "b": {"file": b_name, "sha256": b_hash},
-        **program_differences(found, comments),
-    }
-    code = ", same code" if found.same_code else ""
-    same = f"same: {len(found.a.pages)} pages{code}"
-    if report is not None and found.b is not None:
-        from fatektool.report.program import diff_report
-
-        write_report(report, diff_report(document, found.a, found.b, time=utc()))
-    voice.show(document, program_lines(found, same, a_name, b_name, comments))
-    return 0 if found.same else 1
+    return show_differences(*sides, compare_files(one, other), voice, report, comments=texts)

@@ -1,14 +1,19 @@
-"""Two programs' differences in words."""
+"""Two programs' differences, printed by ``diff`` and ``history diff``; in words for ``verify`` too."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from fatektool.cli.programs.documents import diff_document
+from fatektool.cli.shared.report import write_report
+from fatektool.files.times import utc
 from fatektool.program.headers.header import PAGE_WORDS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
+    from pathlib import Path
 
+    from fatektool.cli.shared.output import Voice
     from fatektool.ladder.differences import NetworkChange
     from fatektool.program.compare import Comparison
     from fatektool.project.comparison import ProgramComparison
@@ -16,6 +21,36 @@ if TYPE_CHECKING:
 _WORDS_SHOWN: Final = 8
 _WHOLE: Final = 40
 _CONTEXT: Final = 3
+
+
+def show_differences(
+    a: tuple[str, str],
+    b: tuple[str, str],
+    found: ProgramComparison,
+    voice: Voice,
+    report: Path | None = None,
+    *,
+    comments: Mapping[str, str] | None = None,
+) -> int:
+    """Print what differs between two programs; give the exit code.
+
+    Args:
+        a: name and hash of the first.
+        b: name and hash of the second.
+        found: the comparison.
+        voice: prints.
+        report: the page to write; None for none.
+        comments: of elements, to stand beside the instructions.
+    """
+    document = diff_document(a, b, found, comments)
+    code = ", same code" if found.same_code else ""
+    same = f"same: {len(found.a.pages)} pages{code}"
+    if report is not None and found.b is not None:
+        from fatektool.report.program import diff_report
+
+        write_report(report, diff_report(document, found.a, found.b, time=utc()))
+    voice.show(document, program_lines(found, same, a[0], b[0], comments))
+    return 0 if found.same else 1
 
 
 def difference_lines(found: Comparison, same: str, a: str, b: str) -> Iterator[str]:

@@ -6,25 +6,22 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fatektool.cli.programs.backup import require_raw_name
+from fatektool.cli.programs.documents import inspect_document, project_document
+from fatektool.cli.programs.file_view import backup_rows, project_rows
 from fatektool.cli.programs.program_files import (
     encoding_option,
     program_file,
     require_comments,
     warn_of_program,
 )
-from fatektool.cli.programs.project_view import project_document, project_rows, sum_words
-from fatektool.cli.shared.documents import inspect_document
+from fatektool.cli.programs.raw_file import require_raw_name
 from fatektool.cli.shared.options import PATH, voice_options
 from fatektool.cli.shared.output import Voice, table
 from fatektool.cli.shared.pairs import together
 from fatektool.files.atomic import write_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
-
-    from fatektool.program.archive import Backup
 
 
 @click.command("inspect", epilog="Example: fatektool inspect press.json --raw press.bin")
@@ -49,24 +46,3 @@ def inspect_command(file: Path, voice: Voice, *, raw: Path | None, force: bool, 
         voice.show(inspect_document(found, file), table(backup_rows(found, str(file))))
     else:
         voice.show(project_document(on_file), table(project_rows(on_file)))
-
-
-def backup_rows(found: Backup, file: str) -> Iterator[tuple[str, object]]:
-    """What a backup holds, as rows; ``file`` is what it is called."""
-    program, source = found.program, found.source
-    used = sum(page != b"\xff" * len(page) for page in program.pages[1:])
-    status = found.plc["status"]
-    yield "file", f"{file}: whole, hash and header checked"
-    yield "created", f"{found.created} by {found.tool}"
-    yield (
-        "source",
-        f"station {source.station} on {source.target}, {source.protocol}, {source.line or 'no line'}",
-    )
-    yield "PLC then", "RUN" if status.get("running") else "STOP"
-    header = program.header
-    yield "header", header.text()
-    if header.checksum is not None:
-        yield "checksum", sum_words(header.checksum)
-    yield "ladder size", f"{program.ladder_words} words, {len(program.pages)} pages, {used} not empty"
-    yield "passes", f"{found.passes}, equal" if found.passes > 1 else "1, not compared"
-    yield "sha256", program.sha256

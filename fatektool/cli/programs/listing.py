@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from fatektool.cli.programs.differences import beside
+from fatektool.cli.programs.documents import listing_document
 from fatektool.cli.programs.program_files import comments_beside, comments_options, program_file, warn_of_code
 from fatektool.cli.shared.inventory_file import inventory_option
 from fatektool.cli.shared.options import PATH, voice_options
@@ -22,12 +23,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fatektool.cli.shared.output import Voice
-    from fatektool.ladder.instruction import Instruction
     from fatektool.ladder.networks import Network
     from fatektool.project.comments import Comments
-    from fatektool.project.program_file import ProgramFile
-
-UNITS = ("main", "sub")
 
 
 @dataclass(frozen=True)
@@ -109,41 +106,6 @@ def _chosen(networks: Sequence[Network], ranges: Sequence[NetworkRange]) -> list
     return [
         network for network in networks if any(each.first <= network.number <= each.last for each in ranges)
     ]
-
-
-def listing_document(found: ProgramFile, networks: Sequence[Network], comments: Comments) -> dict[str, Any]:
-    """``fatektool.listing/1``."""
-    return {
-        "schema": "fatektool.listing/1",
-        "file": found.name,
-        "header": found.header_document,
-        "unknown_words": found.require_code().unknown_words,
-        "networks": [
-            {
-                "number": network.number,
-                "unit": UNITS[network.unit],
-                "comment": text_in(network.addresses, comments.networks),
-                "instructions": [
-                    _instruction_document(number, word, instruction)
-                    for number, word, instruction in network.places
-                ],
-            }
-            for network in networks
-        ],
-        "comments": dict(comments.elements),
-    }
-
-
-def _instruction_document(number: int, word: int, instruction: Instruction) -> dict[str, Any]:
-    return {
-        "number": number,
-        "word": word,
-        "words": [f"{each:04X}" for each in instruction.words],
-        "text": instruction.text,
-        "elements": list(instruction.elements),
-        "known": instruction.known,
-        "grade": instruction.grade.value,
-    }
 
 
 def listing_lines(networks: Sequence[Network], comments: Comments, *, words: bool) -> Iterator[str]:

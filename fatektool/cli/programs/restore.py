@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import click
 from click.core import ParameterSource
 
+from fatektool.cli.programs.documents import restore_document
 from fatektool.cli.shared.addressee import Addressee, Origin, Pace, agree, spent
-from fatektool.cli.shared.documents import restore_document
 from fatektool.cli.shared.image_words import warn_of_image
 from fatektool.cli.shared.incomplete import restore_lines
 from fatektool.cli.shared.options import PATH, Connection, connection_options, yes_option

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import click
 
 from fatektool.cli.programs.differences import program_lines
+from fatektool.cli.programs.documents import verify_document
 from fatektool.cli.programs.program_files import comments_for, comments_options, program_file
-from fatektool.cli.shared.documents import verify_document
 from fatektool.cli.shared.options import PATH, Connection, connection_options
 from fatektool.cli.shared.report import report_option, write_report
 from fatektool.cli.shared.unfinished import forget, warn_of_unfinished

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from fatektool.cli.programs.documents import xref_document
 from fatektool.cli.programs.program_files import comments_beside, comments_options, program_file, warn_of_code
 from fatektool.cli.shared.inventory_file import inventory_option
 from fatektool.cli.shared.options import PATH, voice_options
@@ -60,31 +61,8 @@ def xref_command(
     reference = CrossReference(code)
     shown = asked or reference.elements
     findings = [each for each in reference.findings() if not asked or each.element in asked]
-    uses = {element: _document(reference, element, texts.get(element)) for element in shown}
-    document = {
-        "schema": "fatektool.xref/1",
-        "file": found.name,
-        "unknown_words": code.unknown_words,
-        "elements": uses,
-        "findings": [
-            {
-                "kind": each.kind.value,
-                "element": each.element,
-                "where": [place._asdict() for place in each.where],
-            }
-            for each in findings
-        ],
-    }
-    voice.show(document, _lines(code, uses, findings))
-
-
-def _document(reference: CrossReference, element: str, comment: str | None) -> dict[str, Any]:
-    uses = reference.uses(element)
-    return {
-        "reads": [place._asdict() for place in uses.reads],
-        "writes": [place._asdict() for place in uses.writes],
-        "comment": comment,
-    }
+    document = xref_document(found, reference, shown, findings, texts)
+    voice.show(document, _lines(code, document["elements"], findings))
 
 
 def _lines(code: Code, elements: Mapping[str, Any], findings: Sequence[Finding]) -> Iterator[str]:

@@ -21,6 +21,11 @@ class FilePath(click.Path):
         return Path(standard(os.fspath(value)))
 
 
+def is_standard(path: Path | None) -> bool:
+    """True for ``-``, which is standard input or output."""
+    return str(path) == "-"
+
+
 def standard(name: str) -> str:
     """``-`` for the names that the system has for the standard streams."""
     return "-" if name in {"/dev/stdin", "/dev/stdout"} else name

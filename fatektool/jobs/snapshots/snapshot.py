@@ -26,7 +26,7 @@ from fatektool.jobs.elements.reads import read_elements
 from fatektool.jobs.snapshots.spec import everything, items_in
 from fatektool.protocol.commands import Command
 from fatektool.protocol.elements import Element
-from fatektool.protocol.values import NUMBERS, Value, ValueType, decode
+from fatektool.protocol.values import NUMBERS, Value, ValueType, decode, raw_text
 from fatektool.transport.base import no_note
 
 if TYPE_CHECKING:
@@ -164,7 +164,7 @@ def _element(item: SpecItem, raw: int | None) -> dict[str, Any]:
     found: dict[str, Any] = {
         "element": str(item.item.element),
         "type": item.item.type.value,
-        "raw": None if raw is None else f"{raw:0{max(1, bits // 4)}X}",
+        "raw": None if raw is None else raw_text(raw, bits),
     }
     for name in ("unit", "scale", "offset"):
         value = getattr(item, name)

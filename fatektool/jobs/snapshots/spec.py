@@ -20,6 +20,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.errors import DataError, UsageError
+from fatektool.files.atomic import read_bounded
 from fatektool.files.plain_text import plain_text
 from fatektool.files.strict_toml import read_toml
 from fatektool.jobs.elements.extent import limits
@@ -29,6 +30,7 @@ from fatektool.protocol.values import NUMBERS, default_type
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+    from pathlib import Path
 
     from fatektool.protocol.status import System
 
@@ -74,6 +76,20 @@ class Spec:
 def items_of(selections: Iterable[Item]) -> list[SpecItem]:
     """Bare items, from the command line."""
     return [SpecItem(item) for item in selections]
+
+
+def load_spec(path: Path, groups: Iterable[str] = ()) -> Spec:
+    """Read a specification file.
+
+    Args:
+        path: the file.
+        groups: only items of these groups; all if empty.
+
+    Raises:
+        UsageError: there is no such file.
+        DataError: no TOML, a wrong key or value; says which item.
+    """
+    return parse_spec(read_bounded(path, MAX_SPEC), str(path), groups)
 
 
 def parse_spec(data: bytes, name: str, groups: Iterable[str] = ()) -> Spec:

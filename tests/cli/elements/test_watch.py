@@ -80,6 +80,12 @@ def test_what_cannot_be(plant: Plant, words: list[str]) -> None:
     error_of(plant.cli("watch", *words), 2)
 
 
+def test_only_its_own_options_are_named(plant: Plant) -> None:
+    expected = "fatektool: expected one of: ELEMENTS, --spec FILE.toml"
+    assert error_of(plant.cli("watch"), 2) == expected
+    assert error_of(plant.cli("snapshot", "take"), 2) == f"{expected}, --all"
+
+
 def test_a_line_that_comes_and_goes(plant: Plant, monkeypatch: pytest.MonkeyPatch) -> None:
     """A round that fails is told and tried again; many in a row end it."""
     seen: list[bytes] = []

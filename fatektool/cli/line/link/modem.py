@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fatektool.cli.elements.read import warn_of
+from fatektool.cli.elements.values import warn_of
 from fatektool.cli.line.link.host import host_document
 from fatektool.cli.line.link.ports import modem_rows
 from fatektool.cli.shared.addressee import Pace, look, time_row
@@ -21,6 +21,7 @@ from fatektool.cli.shared.way_back import RegisterWrite, same_again
 from fatektool.errors import PlcError
 from fatektool.jobs.plcports.host import LinkHost, read_host
 from fatektool.jobs.plcports.modem import ModemReport, ModemSettings, plan_modem, read_modem, write_modem
+from fatektool.protocol.values import raw_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -150,13 +151,9 @@ def _rows(report: ModemReport) -> Iterator[tuple[str, object]]:
         yield name, "-" if value is None else value
 
 
-def _text(element_bits: int, value: int) -> str:
-    return f"{value:0{max(1, element_bits // 4)}X}"
-
-
 def _change_line(change: Change) -> str:
     bits = change.element.kind.bits
-    return f"{change.element}  {_text(bits, change.before)} -> {_text(bits, change.after)}"
+    return f"{change.element}  {raw_text(change.before, bits)} -> {raw_text(change.after, bits)}"
 
 
 def _set_lines(
@@ -175,7 +172,7 @@ def _set_lines(
 
 def _did_not(each: NotTaken) -> str:
     bits = each.element.kind.bits
-    return each.words(lambda raw: _text(bits, raw))
+    return each.words(lambda raw: raw_text(raw, bits))
 
 
 def _document(
@@ -203,8 +200,8 @@ def _set_document(
         "changes": [
             {
                 "element": str(change.element),
-                "from": _text(change.element.kind.bits, change.before),
-                "to": _text(change.element.kind.bits, change.after),
+                "from": raw_text(change.before, change.element.kind.bits),
+                "to": raw_text(change.after, change.element.kind.bits),
             }
             for change in plan.changes
         ],
@@ -213,8 +210,8 @@ def _set_document(
         "not_taken": [
             {
                 "element": str(each.element),
-                "wanted": _text(each.element.kind.bits, each.wanted),
-                "got": None if each.got is None else _text(each.element.kind.bits, each.got),
+                "wanted": raw_text(each.wanted, each.element.kind.bits),
+                "got": None if each.got is None else raw_text(each.got, each.element.kind.bits),
                 "reason": each.reason,
             }
             for each in failed

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fatektool.cli.elements.read import warn_of
+from fatektool.cli.elements.values import warn_of
 from fatektool.cli.line.link.host import host_document
 from fatektool.cli.line.link.result import abnormal_rows, result_document
 from fatektool.cli.shared.documents import where

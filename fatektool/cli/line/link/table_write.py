@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fatektool.cli.elements.read import warn_of
+from fatektool.cli.elements.values import warn_of
 from fatektool.cli.line.link.host import host_document
 from fatektool.cli.line.link.table_view import fault_documents, table_lines
 from fatektool.cli.shared.addressee import Pace, look, time_row

@@ -10,13 +10,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fatektool.cli.plc.documents import status_document
 from fatektool.cli.programs.differences import size_of
+from fatektool.cli.programs.documents import saved_document, verify_document
 from fatektool.cli.programs.program_files import comments_of_entry
-from fatektool.cli.shared.documents import saved_document, status_document, verify_document
 from fatektool.cli.shared.image_words import warn_of_image
 from fatektool.cli.shared.options import connection_of
 from fatektool.errors import DataError, PlcError, UsageError
-from fatektool.files.atomic import read_bounded
 from fatektool.jobs.programs.backup import backup
 from fatektool.jobs.programs.safekeeping import former_hash, require_ladder
 from fatektool.jobs.programs.verify import verify_file
@@ -161,13 +161,13 @@ def snapshot_work(voice: Voice, folder: Path, keep: Keep | None) -> Callable[[Pl
     from fatektool.jobs.snapshots.comments import snapshot_with_comments
     from fatektool.jobs.snapshots.formats import as_json
     from fatektool.jobs.snapshots.snapshot import take_snapshot
-    from fatektool.jobs.snapshots.spec import MAX_SPEC, parse_spec
+    from fatektool.jobs.snapshots.spec import load_spec
     from fatektool.jobs.snapshots.store import save_dated
 
     def work(entry: PlcEntry, turn: Turn[Done]) -> Done:
         if entry.spec is None:
             raise UsageError("it has no specification", hint='put spec = "FILE.toml" into the inventory')
-        spec = parse_spec(read_bounded(entry.spec, MAX_SPEC), str(entry.spec))
+        spec = load_spec(entry.spec)
         with opened(entry, turn, voice) as plc:
             snapshot = take_snapshot(plc, spec.items)
         snapshot = snapshot_with_comments(snapshot, comments_of_entry(entry, voice.of(entry.name)))

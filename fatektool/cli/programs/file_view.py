@@ -1,49 +1,40 @@
-"""What a project of the vendor's program holds, as ``inspect`` shows it."""
+"""What a backup or a project holds, as rows of name and value."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
-from fatektool.cli.shared.image_words import image_warnings
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from fatektool.program.archive import Backup
     from fatektool.program.headers.header import Sum
     from fatektool.project.program_file import ProgramFile
 
 
-def project_document(found: ProgramFile) -> dict[str, Any]:
-    """``fatektool.inspect/1`` of a project."""
-    project, comments, code = found.project, found.comments, found.code
-    assert project is not None  # noqa: S101  # the caller's condition
-    known = found.header.family is not None
-    return {
-        "schema": "fatektool.inspect/1",
-        "file": found.name,
-        "kind": "project",
-        "project": {
-            "name": comments.name,
-            "model": project.model,
-            "code_page": comments.code_page,
-            "file_sha256": project.file_sha256,
-            "image_bytes": len(project.memory.image),
-            "elements_commented": len(comments.elements),
-            "networks_commented": len(comments.networks),
-            "units": [{"name": name, "address": place} for place, name in comments.units.items()],
-        },
-        "header": found.header_document,
-        "page_count": found.page_count,
-        "sha256": found.sha256,
-        "networks": None if code is None else len(code.networks),
-        "unknown_words": None if code is None else code.unknown_words,
-        "warnings": image_warnings(found.program) if known else [],
-        "faults": list(found.header.faults) if known else [],
-    }
+def backup_rows(found: Backup, file: str) -> Iterator[tuple[str, object]]:
+    """What a backup holds; ``file`` is what it is called."""
+    program, source = found.program, found.source
+    used = sum(page != b"\xff" * len(page) for page in program.pages[1:])
+    status = found.plc["status"]
+    yield "file", f"{file}: whole, hash and header checked"
+    yield "created", f"{found.created} by {found.tool}"
+    yield (
+        "source",
+        f"station {source.station} on {source.target}, {source.protocol}, {source.line or 'no line'}",
+    )
+    yield "PLC then", "RUN" if status.get("running") else "STOP"
+    header = program.header
+    yield "header", header.text()
+    if header.checksum is not None:
+        yield "checksum", _sum_words(header.checksum)
+    yield "ladder size", f"{program.ladder_words} words, {len(program.pages)} pages, {used} not empty"
+    yield "passes", f"{found.passes}, equal" if found.passes > 1 else "1, not compared"
+    yield "sha256", program.sha256
 
 
 def project_rows(found: ProgramFile) -> Iterator[tuple[str, object]]:
-    """The same for people."""
+    """What a project holds."""
     project, comments, code = found.project, found.comments, found.code
     assert project is not None  # noqa: S101  # the caller's condition
     yield "file", f"{found.name}: a WinProladder project, cipher solved"
@@ -52,7 +43,7 @@ def project_rows(found: ProgramFile) -> Iterator[tuple[str, object]]:
     header = found.header
     yield "header", header.text() if header.family is not None else "none known (FBE)"
     if header.checksum is not None:
-        yield "checksum", sum_words(header.checksum)
+        yield "checksum", _sum_words(header.checksum)
     if code is not None:
         unknown = f", {code.unknown_words} words not understood" if code.unknown_words else ""
         yield "code", f"{len(code.words)} words in {len(code.networks)} networks{unknown}"
@@ -64,7 +55,7 @@ def project_rows(found: ProgramFile) -> Iterator[tuple[str, object]]:
     yield "sha256", f"{found.sha256} of the image"
 
 
-def sum_words(found: Sum) -> str:
+def _sum_words(found: Sum) -> str:
     """A checksum, and whether it holds."""
     if found.valid:
         return f"{found.stored:04X}, holds"
