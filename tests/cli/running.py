@@ -69,10 +69,10 @@ class Cli:
 class Press:
     """A simulated PLC whose memory lies in a file, and backups beside it."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, target: str = "") -> None:
         self.folder = folder
         self.state = folder / "plc.state"
-        self.target = f"sim:{self.state}"
+        self.target = target or f"sim:{self.state}"
         build_simulation(ladder_words=400, program=OLD.pages, state=self.state)
         self.old = self.file("old.json", OLD)
         self.new = self.file("new.json", NEW)

@@ -163,6 +163,11 @@ class Bar:
         self.update: Progress = no_progress
 
     def __enter__(self) -> Self:
+        self._begin()
+        return self
+
+    def _begin(self) -> None:
+        """Draw a bar of its own below what is on the screen."""
         if self._shown:
             from rich.console import Console
             from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
@@ -179,8 +184,8 @@ class Bar:
                 redirect_stdout=False,  # data may go to a file while the bar is on the terminal
             )
             self._rich.start()
+            self._tasks.clear()
             self.update = self._update
-        return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
@@ -202,11 +207,8 @@ class Bar:
             self._rich.stop()
 
     def go_on(self) -> None:
-        """Put the bar back; what was done before the question stays on the screen above it."""
-        if self._shown:
-            for task in self._tasks.values():
-                self._rich.update(task, visible=False)
-            self._rich.start()
+        """Draw a bar again, below the question: one that was started twice would erase the line above it."""
+        self._begin()
 
     def _update(self, phase: str, done: int, total: int) -> None:
         task = self._tasks.get(phase)

@@ -10,6 +10,7 @@ import pytest
 from fatektool.program.archive import load_backup
 from tests.cli.running import NEW, OLD, Press, process, served
 from tests.cli.terminal import Terminal
+from tests.pictures.screen import screen_of, text_of
 from tests.program.samples import program
 
 CTRL_C, CTRL_D = "\x03", "\x04"
@@ -39,6 +40,7 @@ def test_restore_asks_and_yes_is_yes(press: Press) -> None:
             assert line in terminal.text.replace(f"{press.folder}/", "").replace("\n", " ")
         terminal.type("y\n")
         assert terminal.end() == 0
+        assert any(line.endswith("? [y/N]: y") for line in text_of(screen_of(terminal.raw, 80, 60))), "erased"
     assert press.program == NEW
 
 
