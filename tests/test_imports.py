@@ -155,9 +155,6 @@ def test_no_file_is_in_a_circle() -> None:
 
 
 COMMANDS_BY_COMMANDS: set[tuple[str, str]] = {
-    ("line.link.modem", "line.link.ports"),
-    ("line.link.ports", "line.link.result"),
-    ("line.link.table", "line.link.result"),
     ("many.fleet.check", "many.check"),
 }
 """Still to be untied: this may only shrink."""

@@ -41,6 +41,11 @@ def field_lines(explanation: Explanation, *, binary: bool) -> Iterator[str]:
         yield f"  fault: {explanation.fault}"
 
 
+def printable(data: bytes) -> str:
+    """Bytes as a text of the same length, with a dot for each that is not printable."""
+    return "".join(chr(byte) if 0x20 <= byte < 0x7F else "." for byte in data)
+
+
 def characters(raw: bytes) -> str:
     """Bytes as the characters they are, others as <hex>."""
     return "".join(chr(byte) if 0x20 < byte < 0x7F else f"<{byte:02X}>" for byte in raw)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from fatektool.cli.line.frame_view import printable
 from fatektool.cli.shared.pairs import apart, given
 from fatektool.errors import UsageError
 from fatektool.files.times import utc
@@ -74,8 +75,7 @@ def _lines(answer: Answer) -> Iterator[str]:
     yield f"{answer.address}  {len(answer.data)} bytes{short}; what they mean is not known:"
     for at in range(0, len(answer.data), _IN_A_LINE):
         part = answer.data[at : at + _IN_A_LINE]
-        text = "".join(chr(byte) if 0x20 <= byte < 0x7F else "." for byte in part)
-        yield f"  {at:04X}  {part.hex(' ').upper():<47}  {text}"
+        yield f"  {at:04X}  {part.hex(' ').upper():<47}  {printable(part)}"
 
 
 def _document(head: dict[str, Any], listen_s: float, found: list[Answer]) -> dict[str, Any]:

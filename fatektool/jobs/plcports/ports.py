@@ -30,6 +30,7 @@ from fatektool.protocol.elements import Element
 
 if TYPE_CHECKING:
     from fatektool.client import Plc
+    from fatektool.plcports.results import TransactionResult
 
 MAX_RECEIVED: Final = 511
 
@@ -55,6 +56,20 @@ class PortsReport:
     raw: dict[str, int]
     errors: dict[str, str]
     host: LinkHost
+
+
+_KEPT_BY: Final = (*TRANSACTIONS, TableKind.MD1)
+"""The instructions whose last result a port keeps; the registers do not say which of them it was."""
+
+
+def kept_meaning(result: TransactionResult) -> str:
+    """The last result that a port keeps, in words."""
+    return NONE_YET if result.none_yet else meaning(result.code, _KEPT_BY)
+
+
+def kept_next_step(result: TransactionResult) -> str | None:
+    """What to do about the last result that a port keeps; None where there is nothing to do."""
+    return next_step(result.code, _KEPT_BY)
 
 
 def read_ports(plc: Plc) -> PortsReport:
@@ -115,6 +130,11 @@ class ResultReport:
     def good(self) -> bool:
         """No error is known: neither in the result code, nor on the high-speed link."""
         return self.state.result.code == 0 and (self.high_speed is None or self.high_speed.good)
+
+    @property
+    def code_alone(self) -> bool:
+        """True for a kind whose WR+0 holds a result code and nothing else, with WR+1 for internal use."""
+        return self.kind is not None and self.kind not in TRANSACTIONS
 
     @property
     def _kinds(self) -> tuple[TableKind, ...]:

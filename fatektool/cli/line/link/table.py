@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fatektool.cli.line.link.result import KINDS
-from fatektool.cli.line.link.table_view import table_document, table_lines
+from fatektool.cli.line.link.documents import table_document
+from fatektool.cli.line.link.kind import KIND
+from fatektool.cli.line.link.table_view import table_lines
 from fatektool.cli.line.link.table_write import write_command
 from fatektool.cli.shared.documents import where
 from fatektool.cli.shared.options import PATH, Connection, connection_options, voice_options
@@ -34,7 +35,7 @@ def kind_option(function: F) -> F:
     """``--kind``, which the words of a table do not tell."""
     return click.option(
         "--kind",
-        type=click.Choice(KINDS, case_sensitive=False),
+        type=KIND,
         required=True,
         help="CLINK's mode (FUN151), or mbus (FUN150).",
     )(function)

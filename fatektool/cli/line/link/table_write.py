@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fatektool.cli.elements.values import warn_of
-from fatektool.cli.line.link.host import host_document
-from fatektool.cli.line.link.table_view import fault_documents, table_lines
+from fatektool.cli.line.link.documents import fault_documents, host_document
+from fatektool.cli.line.link.table_view import table_lines
 from fatektool.cli.shared.addressee import Pace, look, time_row
 from fatektool.cli.shared.documents import where
 from fatektool.cli.shared.options import PATH, Connection, connection_options, yes_option
