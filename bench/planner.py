@@ -26,7 +26,9 @@ from fatektool.planner import plan_reads, plan_writes, turnaround_bytes
 from fatektool.protocol.elements import Element
 from fatektool.protocol.fatek.facon.codec import FACON
 from fatektool.protocol.fatek.mseries.codec import MSERIES
-from fatektool.protocol.modbus.codec import ASCII, RTU, TCP
+from fatektool.protocol.modbus.ascii import ASCII
+from fatektool.protocol.modbus.rtu import RTU
+from fatektool.protocol.modbus.tcp import TCP
 from tests.planner.exhaustive import READ_CAPS, WRITE_CAPS, Caps, least_read, least_write, wire_bytes
 from tests.planner.one_kind import least_of_registers
 from tests.planner.plain import merged, one_each

@@ -16,13 +16,13 @@ from fatektool.client import Plc
 from fatektool.errors import UsageError
 from fatektool.exchange.link import Link
 from fatektool.protocol.codec import require_commands, require_station
-from fatektool.protocol.registry import Codecs
+from fatektool.protocol.registry import codec_named
 from fatektool.transport.base import LineSettings, no_note
 from fatektool.transport.patience import Patience, PatientTransport
 from fatektool.transport.target import Target, TargetKind
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Iterable
     from pathlib import Path
 
     from fatektool.protocol.codec import Codec
@@ -34,24 +34,12 @@ if TYPE_CHECKING:
     from fatektool.transport.lock import PortLock
     from fatektool.transport.shared_line import SharedLine
 
-CODECS: Mapping[str, Codec] = Codecs()
 _LAST_STATION: Final = 254
 _ONE_TRY: Final = Patience()
 
 
 def _to_nobody(_: object) -> None:
     pass
-
-
-def codec_named(protocol: str) -> Codec:
-    """The codec of this name.
-
-    Raises:
-        UsageError: there is none.
-    """
-    if protocol not in CODECS:
-        raise UsageError(f"protocol {protocol!r}: expected one of {', '.join(CODECS)}")
-    return CODECS[protocol]
 
 
 def usual_format(protocol: str) -> str:

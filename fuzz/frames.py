@@ -31,7 +31,7 @@ from fatektool.protocol.commands import (
 )
 from fatektool.protocol.elements import Element
 from fatektool.protocol.explain import Role
-from fatektool.protocol.explainers import EXPLAINERS
+from fatektool.protocol.registry import new_explainer
 from tests.protocol.decoding import decoded
 
 if TYPE_CHECKING:
@@ -83,7 +83,7 @@ def look_at(
     for frame in good:
         _say(codec, frame)
     for role in (Role.EITHER, Role.REQUEST, Role.ANSWER):
-        told = list(EXPLAINERS[codec.name]().explain(stream, role))
+        told = list(new_explainer(codec.name).explain(stream, role))
         assert b"".join(part.raw for part in told) == stream
         assert all(b"".join(field.raw for field in part.fields) == part.raw for part in told)
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from fatektool.client import Plc
-from fatektool.connection import CODECS
 from fatektool.exchange.link import Link
+from fatektool.protocol.registry import CODECS
 from fatektool.simulator.build import build_simulation
 from fatektool.transport.base import LineSettings
 from fatektool.transport.memory import MemoryTransport

@@ -17,6 +17,7 @@ ROOT = Path(fatektool.__file__).parent
 
 RANKS = {
     "errors": 0,
+    "protocols": 0,
     "version": 0,
     "files": 1,
     "protocol": 1,
@@ -195,7 +196,9 @@ def test_the_simulator_shares_no_code_with_the_client() -> None:
         if folder_of(found.name) == "simulator":
             assert found.folder in TO_THE_SIMULATOR, f"{found.by} imports {found.name}"
         if found.folder == "simulator":
-            assert folder_of(found.name) in {"simulator", "errors"}, f"{found.by} imports {found.name}"
+            assert folder_of(found.name) in {"simulator", "errors", "protocols"}, (
+                f"{found.by} imports {found.name}"
+            )
 
 
 def test_only_the_command_line_prints() -> None:

@@ -42,6 +42,8 @@ OTHER_PLCS = {
     "fatektool.protocol.modbus.data",
     "fatektool.protocol.modbus.map",
     "fatektool.protocol.modbus.pdu",
+    "fatektool.protocol.modbus.rtu",
+    "fatektool.protocol.modbus.tcp",
     "fatektool.transport.memory",
     "fatektool.transport.modem.device",
     "fatektool.transport.serial_line.port",

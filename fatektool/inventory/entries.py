@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
-from fatektool.connection import CODECS, usual_format
+from fatektool.connection import usual_format
 from fatektool.errors import DataError, UsageError
 from fatektool.files.plain_text import plain_text
 from fatektool.files.portable_name import is_portable_name
@@ -18,6 +18,8 @@ from fatektool.files.strict_toml import read_toml
 from fatektool.inventory.lines import key_lines, line_of
 from fatektool.inventory.values import CHECKS
 from fatektool.protocol.codec import require_station
+from fatektool.protocol.registry import codec_named
+from fatektool.protocols import DEFAULT
 from fatektool.transport.target import Target
 
 if TYPE_CHECKING:
@@ -179,15 +181,15 @@ class _TableReader:
         values = defaults | self._table(table, ("plc", name), CHECKS.keys())
         if "target" not in values and isinstance(table, dict) and "target" not in table:
             self._fault(f'{name}: expected target = "tcp://HOST" or another', "plc", name)
-        protocol = values.get("protocol", "facon")
+        protocol = values.get("protocol", DEFAULT)
         if len(self._found.faults) == faults:
             try:
-                Target.parse(values["target"], default_port=CODECS[protocol].default_tcp_port)
+                Target.parse(values["target"], default_port=codec_named(protocol).default_tcp_port)
             except UsageError as error:
                 self._fault(f"{name}: {error}", "plc", name, "target")
                 return
             try:
-                require_station(CODECS[protocol], values.get("station", 1))
+                require_station(codec_named(protocol), values.get("station", 1))
             except UsageError as error:
                 self._fault(f"{name}: {error}", "plc", name, "station")
                 return

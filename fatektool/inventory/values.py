@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Final, TypeAlias
 
-from fatektool.connection import CODECS
+from fatektool.protocols import PROTOCOLS
 from fatektool.transport.base import LineSettings
 from fatektool.transport.target import Target, TargetKind
 
@@ -88,12 +88,10 @@ def _format(value: object, folder: Path) -> str:
     return LineSettings(format=_text(value, folder).upper()).format
 
 
-_PROTOCOLS: Final = tuple(CODECS)
-
 CHECKS: Final[dict[str, tuple[str, Take]]] = {
     "target": ("a text such as tcp://192.168.2.3 or /dev/ttyUSB0", _target),
     "station": ("a whole number of 1 to 254, with modbus-tcp 0 or 255 too", _whole(0, 255)),
-    "protocol": (f"one of {', '.join(_PROTOCOLS)}", _one_of(_PROTOCOLS)),
+    "protocol": (f"one of {', '.join(PROTOCOLS)}", _one_of(tuple(PROTOCOLS))),
     "baud": ("a whole number of 50 to 4000000", _whole(50, 4_000_000)),
     "format": ("a text such as 7E1", _format),
     "timeout_s": ("seconds, 0.001 to 3600", _seconds(0.001, 3600)),

@@ -101,6 +101,10 @@ class Codec(Protocol):
         """How long a serial line must have been silent before a request, in characters."""
 
     @property
+    def last_error(self) -> int:
+        """The highest error code that an answer can carry."""
+
+    @property
     def probe(self) -> Request[Any]:
         """What every PLC answers at no cost, and no echo of it could be taken for the answer."""
 
@@ -138,6 +142,55 @@ class Codec(Protocol):
             GatewayTimeout: a gateway says that it got no answer.
             FrameError: no answer to this request, by length or content.
         """
+
+    def encode_answer(self, station: int, request: Request[A], answer: A, number: int = 0) -> bytes:
+        """The frame in which a PLC gives this answer to a request.
+
+        Raises:
+            UsageError: no answer of this protocol can say it.
+        """
+
+    def encode_raw(
+        self,
+        station: int,
+        command: int,
+        data: bytes,
+        number: int = 0,
+        *,
+        answer: bool = False,
+    ) -> bytes:
+        """A frame with any command and data, whether the protocol has such a command or not.
+
+        Args:
+            station: 0 for all of them.
+            command: 0 to 255; in Modbus the function.
+            data: what stands between command and checksum.
+            number: 0 to ``numbers`` less 1.
+            answer: True for an answer, where its frame differs from a request's.
+
+        Raises:
+            UsageError: no frame can hold this.
+        """
+
+    def encode_refusal(self, station: int, command: int, code: int, number: int = 0) -> bytes:
+        """The frame in which a PLC refuses this command.
+
+        Args:
+            station: who refuses.
+            command: 0 to 255; in Modbus the function.
+            code: the error code, 1 to ``last_error``.
+            number: of the request.
+        """
+
+    def checksum(self, data: bytes) -> bytes:
+        """The checksum of what it covers, as it stands on the wire.
+
+        Raises:
+            UsageError: frames of this protocol have none.
+        """
+
+    def error_text(self, code: int) -> str:
+        """What an error code above 0 means, in words."""
 
     def request_bytes(self, request: Request[A]) -> int:
         """Length in bytes of the frame that asks this, wherever its elements lie."""

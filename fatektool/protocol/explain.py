@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING, ClassVar, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -58,15 +58,15 @@ class Explanation:
 
 
 class Explainer(Protocol):
-    """Explains a conversation of one protocol, piece by piece, in the order it was spoken.
+    """Explains a conversation of one protocol, piece by piece, in the order it was sent."""
 
-    Attributes:
-        form: what a frame looks like, in words.
-        binary: True if its bytes are better shown as hex than as characters.
-    """
+    @property
+    def form(self) -> str:
+        """What a frame looks like, in words."""
 
-    form: ClassVar[str]
-    binary: ClassVar[bool]
+    @property
+    def binary(self) -> bool:
+        """True if its bytes are better shown as hex than as characters."""
 
     def explain(self, data: bytes, role: Role = Role.EITHER) -> Iterator[Explanation]:
         """Explain all frames in a piece of the conversation, and the bytes that are none.

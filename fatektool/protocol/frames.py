@@ -12,32 +12,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from fatektool.errors import UsageError
-from fatektool.protocol.registry import Codecs
+from fatektool.protocol.registry import codec_named
 
 if TYPE_CHECKING:
-    from fatektool.protocol.codec import Codec
     from fatektool.protocol.commands import Request
-    from fatektool.protocol.modbus.codec import ModbusCodec
 
 A = TypeVar("A")
-
-_CODECS: Final = Codecs()
-_MODBUS: Final = "modbus-"
-_REFUSED: Final = 0x80
-
-
-def codec_of(protocol: str) -> Codec:
-    """The codec of a protocol.
-
-    Raises:
-        UsageError: there is no such protocol.
-    """
-    if protocol not in _CODECS:
-        raise UsageError(f"protocol: expected one of {', '.join(_CODECS)}, got {protocol!r}")
-    return _CODECS[protocol]
 
 
 def frame(request: Request[Any], station: int = 1, protocol: str = "facon", *, number: int = 0) -> bytes:
@@ -53,7 +36,7 @@ def frame(request: Request[Any], station: int = 1, protocol: str = "facon", *, n
     Raises:
         UsageError: no such protocol, or it cannot say this.
     """
-    return codec_of(protocol).encode(station, request, number)
+    return codec_named(protocol).encode(station, request, number)
 
 
 def answer_frame(
@@ -64,16 +47,9 @@ def answer_frame(
     Raises:
         UsageError: no such protocol, or it cannot say this.
     """
-    codec_of(protocol).encode(station, request, number)  # what cannot be asked has no answer
-    if protocol.startswith(_MODBUS):
-        return _modbus(protocol).encode_answer(station, request, answer, number)
-    if protocol == "mseries":
-        from fatektool.protocol.fatek.mseries.codec import MSERIES
-
-        return MSERIES.encode_answer(station, request, answer)
-    from fatektool.protocol.fatek.facon.codec import FACON
-
-    return FACON.encode_answer(station, request, answer)
+    codec = codec_named(protocol)
+    codec.encode(station, request, number)  # what cannot be asked has no answer
+    return codec.encode_answer(station, request, answer, number)
 
 
 def raw_frame(
@@ -98,25 +74,10 @@ def raw_frame(
     Raises:
         UsageError: no such protocol, or no frame of it can hold this.
     """
-    codec = codec_of(protocol)
+    codec = codec_named(protocol)
     if not 0 <= command <= 0xFF:
         raise UsageError(f"command: expected 00 to FF, got {command:X}")
-    if not protocol.startswith(_MODBUS):
-        if protocol == "facon":
-            from fatektool.protocol.fatek.facon.codec import frame_bytes
-
-            return frame_bytes(station, command, data)
-        from fatektool.protocol.fatek.mseries import codec as mseries
-
-        header = mseries.RESPONSE if answer else mseries.QUERY
-        return mseries.frame_bytes(header, station, command, data)
-    from fatektool.protocol.modbus.frame import MAX_PDU
-
-    if station and station not in codec.stations:
-        raise UsageError(f"station: expected 0 to {codec.stations[-1]}, got {station}")
-    if len(data) >= MAX_PDU:
-        raise UsageError(f"frame data: expected at most {MAX_PDU - 1} bytes, got {len(data)}")
-    return _modbus(protocol).framing.encode(station, bytes([command]) + data, number)
+    return codec.encode_raw(station, command, data, number, answer=answer)
 
 
 def error_frame(
@@ -134,13 +95,10 @@ def error_frame(
     Raises:
         UsageError: no such protocol or code.
     """
-    most = 0xF if protocol == "facon" else 0xFF
-    if not 1 <= code <= most:
-        raise UsageError(f"error code: expected 1 to {most:X}, got {code:X}")
-    if protocol.startswith(_MODBUS):
-        return raw_frame(command | _REFUSED, bytes([code]), station, protocol, answer=True, number=number)
-    data = b"%X" % code if protocol == "facon" else bytes([code])
-    return raw_frame(command, data, station, protocol, answer=True)
+    codec = codec_named(protocol)
+    if not 1 <= code <= codec.last_error:
+        raise UsageError(f"error code: expected 1 to {codec.last_error:X}, got {code:X}")
+    return codec.encode_refusal(station, command, code, number)
 
 
 def checksum(data: bytes, protocol: str = "facon") -> bytes:
@@ -153,19 +111,7 @@ def checksum(data: bytes, protocol: str = "facon") -> bytes:
     Raises:
         UsageError: no such protocol, or it has no checksum.
     """
-    codec_of(protocol)
-    match protocol:
-        case "facon":
-            return b"%02X" % (sum(data) & 0xFF)
-        case "mseries" | "modbus-rtu":
-            from fatektool.protocol.fatek.mseries.crc import crc_bytes
-
-            return crc_bytes(data)
-        case "modbus-ascii":
-            from fatektool.protocol.modbus.pdu import lrc_byte
-
-            return b"%02X" % lrc_byte(data)
-    raise UsageError(f"{protocol} frames have no checksum: the network has its own")
+    return codec_named(protocol).checksum(data)
 
 
 def error_text(code: int, protocol: str = "facon") -> str:
@@ -178,29 +124,5 @@ def error_text(code: int, protocol: str = "facon") -> str:
     Raises:
         UsageError: no such protocol.
     """
-    codec_of(protocol)
-    if code == 0:
-        return "no error"
-    if protocol.startswith(_MODBUS):
-        from fatektool.protocol.modbus import data as modbus_data
-
-        if code in modbus_data.GATEWAY:
-            return f"the gateway says: {modbus_data.GATEWAY[code]}"
-        return modbus_data.MEANINGS.get(code, "a code that Modbus does not list")
-    if protocol == "mseries":
-        from fatektool.protocol.fatek.mseries import errors as mseries_errors
-
-        return mseries_errors.MEANINGS.get(code, mseries_errors.UNKNOWN)
-    if protocol == "mseries":
-        from fatektool.protocol.fatek.mseries import errors as mseries_errors
-
-        return mseries_errors.MEANINGS.get(code, mseries_errors.UNKNOWN)
-    from fatektool.protocol.plc_errors import MEANINGS
-
-    return MEANINGS.get(code, "a code that no paper lists")
-
-
-def _modbus(protocol: str) -> ModbusCodec:
-    from fatektool.protocol.modbus.codec import ASCII, RTU, TCP
-
-    return {codec.name: codec for codec in (RTU, ASCII, TCP)}[protocol]
+    codec = codec_named(protocol)
+    return codec.error_text(code) if code else "no error"

@@ -43,6 +43,11 @@ PROGRAM_REFUSED: Final = (
 )
 
 
+def meaning_of(code: int) -> str:
+    """What an error code means, in words."""
+    return MEANINGS.get(code, "a code that no paper lists")
+
+
 def refusal(code: int, command: int, asked: str) -> PlcRefused:
     """The exception for an error code.
 
@@ -54,9 +59,8 @@ def refusal(code: int, command: int, asked: str) -> PlcRefused:
     hint = _NEXT.get(code)
     if code in {0x2, 0x4, 0xA} and command in PROGRAM_COMMANDS:
         hint = PROGRAM_REFUSED
-    meaning = MEANINGS.get(code, "a code that no paper lists")
     return PlcRefused(
-        f"the PLC refused to {asked} ({command:02X}): error {code:X}, {meaning}",
+        f"the PLC refused to {asked} ({command:02X}): error {code:X}, {meaning_of(code)}",
         code=code,
         command=command,
         hint=hint,

@@ -1,39 +1,38 @@
-"""The protocols by name. Each is loaded when it is asked for: who speaks FACON does not wait for Modbus."""
+"""The client's parts of each protocol, by the names of ``--protocol``; loaded when they are asked for."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
+from fatektool.errors import UsageError
+from fatektool.protocols import Loaded
+
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Mapping
 
     from fatektool.protocol.codec import Codec
+    from fatektool.protocol.explain import Explainer
 
-_NAMES: Final = ("facon", "mseries", "modbus-rtu", "modbus-ascii", "modbus-tcp")
+CODECS: Final[Mapping[str, Codec]] = Loaded("codec")
+_EXPLAINERS: Final[Mapping[str, Callable[[Codec], Explainer]]] = Loaded("explainer")
 
 
-class Codecs(Mapping[str, "Codec"]):
-    """The codec of each name of ``--protocol``, in the order in which they are listed."""
+def codec_named(protocol: str) -> Codec:
+    """The codec of this name.
 
-    def __getitem__(self, name: str) -> Codec:
-        if name == "facon":
-            from fatektool.protocol.fatek.facon.codec import FACON
+    Raises:
+        UsageError: there is none.
+    """
+    if protocol not in CODECS:
+        raise UsageError(f"protocol {protocol!r}: expected one of {', '.join(CODECS)}")
+    return CODECS[protocol]
 
-            return FACON
-        if name == "mseries":
-            from fatektool.protocol.fatek.mseries.codec import MSERIES
 
-            return MSERIES
-        from fatektool.protocol.modbus.codec import ASCII, RTU, TCP
+def new_explainer(protocol: str) -> Explainer:
+    """A new explainer for one conversation.
 
-        return {codec.name: codec for codec in (RTU, ASCII, TCP)}[name]
-
-    def __contains__(self, name: object) -> bool:
-        return name in _NAMES  # a name is known without its codec
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(_NAMES)
-
-    def __len__(self) -> int:
-        return len(_NAMES)
+    Raises:
+        UsageError: there is no such protocol.
+    """
+    codec = codec_named(protocol)
+    return _EXPLAINERS[protocol](codec)

@@ -14,17 +14,17 @@ With a state file the memory in it is what counts: a model that contradicts it i
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import partial
 from math import inf
 from typing import TYPE_CHECKING
 
 from fatektool.errors import DataError, UsageError
+from fatektool.protocols import DEFAULT
 from fatektool.simulator.faults import DEFAULT_SLOW_S, Faults, parse_faults
 from fatektool.simulator.line import BITS_PER_CHAR, PIECE_S, WHOLE_ANSWERS, SimulatedLine
 from fatektool.simulator.models import DEFAULT_MODEL, MAX_LADDER_WORDS, MODELS, PAGE_BYTES, WORDS_PER_PAGE
 from fatektool.simulator.plc import MAX_STATION, SimulatedPlc
 from fatektool.simulator.program.demonstration import program_of
-from fatektool.simulator.slaves.registry import DEFAULT_PROTOCOL, SLAVES
+from fatektool.simulator.slaves.registry import SLAVES
 from fatektool.simulator.state import StateFile
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ class Simulation:
     """
 
     plcs: dict[int, SimulatedPlc]
-    make_slave: Callable[[Mapping[int, SimulatedPlc]], Slave] = SLAVES[DEFAULT_PROTOCOL].make_slave
+    make_slave: Callable[[Mapping[int, SimulatedPlc]], Slave]
     faults: Faults | None = None
     state: StateFile | None = None
     baud: float | None = None
@@ -131,7 +131,7 @@ def build_simulation(
     stations: Iterable[int] | None = None,
     model: str | None = None,
     *,
-    protocol: str = DEFAULT_PROTOCOL,
+    protocol: str = DEFAULT,
     ladder_words: int | None = None,
     program: Sequence[bytes] | None = None,
     program_seed: int = 1,
@@ -158,7 +158,7 @@ def build_simulation(
         program_seed: see ``build_plcs``.
         program_swapped: see ``build_plcs``.
         program_commands: see ``build_plcs``.
-        error_character: see ``FaconSlave``.
+        error_character: see ``FaconSlave``; False is for FACON alone.
         state: keeps the memory in this file; it is made if it is not there.
         faults: ``KIND=P`` strings.
         seed: of the faults.
@@ -168,9 +168,12 @@ def build_simulation(
         scan_ms: the PLCs' time to answer.
         latency_timer_ms: of a USB adapter at the client's end; 0 for none.
     """
-    spoken = SLAVES.get(protocol)
-    if spoken is None:
+    if protocol not in SLAVES:
         raise UsageError(f"no protocol {protocol!r}: choose one of {', '.join(SLAVES)}")
+    slave = SLAVES[protocol]
+    make_slave = slave.make if error_character else slave.make_without_error_character
+    if make_slave is None:
+        raise UsageError(f"{protocol}: its answers have an error code in every paper")
     plan = parse_faults(faults)
     if (baud is not None and not baud > 0) or not scan_ms >= 0:
         raise UsageError(
@@ -183,7 +186,7 @@ def build_simulation(
     if kept is None or state_file is None:
         plcs = build_plcs(
             (1,) if stations is None else stations,
-            model or spoken.model,
+            model or slave.model,
             ladder_words=ladder_words,
             program=program,
             program_seed=program_seed,
@@ -197,11 +200,11 @@ def build_simulation(
 
     simulation = Simulation(
         plcs,
-        partial(spoken.make_slave, error_character=error_character),
+        make_slave,
         Faults(plan, seed=seed, slow_s=slow_s) if plan.probabilities or plan.power_cut else None,
         state_file,
         baud,
-        bits_per_char or spoken.bits_per_char,
+        bits_per_char or slave.bits_per_char,
         scan_ms / 1000,
         latency_timer_ms / 1000,
     )

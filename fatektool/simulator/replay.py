@@ -22,15 +22,16 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 from fatektool.errors import DataError, UsageError
+from fatektool.protocols import DEFAULT
 from fatektool.simulator.build import build_plcs
 from fatektool.simulator.slaves.base import BROADCAST, Request, RequestKind
-from fatektool.simulator.slaves.registry import DEFAULT_PROTOCOL, SLAVES
+from fatektool.simulator.slaves.registry import SLAVES
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Mapping
 
+    from fatektool.simulator.plc import SimulatedPlc
     from fatektool.simulator.slaves.base import Slave
-    from fatektool.simulator.slaves.registry import MakeSlave
 
 _MOST_NAMES = 1000
 """How many different unknown requests are remembered; all are counted."""
@@ -82,14 +83,14 @@ class Replay:
     def __init__(
         self,
         records: Iterable[Recorded],
-        protocol: str = DEFAULT_PROTOCOL,
+        protocol: str = DEFAULT,
         *,
         speed: float = 1.0,
         on_unknown: Callable[[Request], None] = lambda _: None,
     ) -> None:
         if not speed >= 0:  # refuses NaN too
             raise UsageError(f"a replay's speed is 0 or more, not {speed}")
-        make_slave = SLAVES[protocol].make_slave
+        make_slave = SLAVES[protocol].make
         exchanges = _exchanges(records, make_slave)
         if not exchanges:
             raise DataError(
@@ -196,7 +197,9 @@ def _question(request: Request) -> object:
     return (request.station, request.kind) if request.kind is RequestKind.LOOPBACK else request.raw
 
 
-def _exchanges(records: Iterable[Recorded], make_slave: MakeSlave) -> list[_Exchange]:
+def _exchanges(
+    records: Iterable[Recorded], make_slave: Callable[[Mapping[int, SimulatedPlc]], Slave]
+) -> list[_Exchange]:
     """The requests in a recording, each with what it heard.
 
     A request may stand in several records, and several in one. What came before the first is left out: it

@@ -7,7 +7,7 @@ r"""A record of the wire: what went out and what came in, with the time of each.
 ``.pcap``, for Wireshark: link type 147 (user 0), nanosecond time stamps; before the bytes of each record
 stands a pseudo-header of four bytes::
 
-    version 01 · direction 00 sent, 01 received · protocol (``PROTOCOL_CODES``) · 00
+    version 01 · direction 00 sent, 01 received · protocol (``trace_code`` in ``protocols.py``) · 00
 
 Bytes that came in pieces make one record up to the next request or time-out, so that a frame is seldom split;
 of a line that babbles on, a record holds 32 KiB.
@@ -24,6 +24,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, BinaryIO, Final, Protocol
 
 from fatektool.errors import TransportError, UsageError
+from fatektool.protocols import PROTOCOLS
 from fatektool.transport.base import Transport
 
 if TYPE_CHECKING:
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
 
 LINK_TYPE: Final = 147
 PCAP_MAGIC: Final = 0xA1B23C4D  # nanoseconds, in the writer's byte order
-PROTOCOL_CODES: Final = {"facon": 1, "mseries": 2, "modbus-rtu": 3, "modbus-ascii": 4, "modbus-tcp": 5}
 SENT: Final = "tx"
 RECEIVED: Final = "rx"
 _MAX_RECORD: Final = 1 << 15
@@ -80,7 +80,7 @@ class PcapTrace:
 
     def __init__(self, file: BinaryIO, protocol: str) -> None:
         self._file = file
-        self._protocol = PROTOCOL_CODES[protocol]
+        self._protocol = PROTOCOLS[protocol].trace_code
         file.write(_PCAP_HEADER.pack(PCAP_MAGIC, 2, 4, 0, 0, 65535, LINK_TYPE))
         file.flush()
 

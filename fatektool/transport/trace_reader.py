@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import DataError
 from fatektool.files.plain_text import EncodingError, plain_text
-from fatektool.transport.trace import LINK_TYPE, PCAP_MAGIC, PROTOCOL_CODES, RECEIVED, SENT, time_text
+from fatektool.protocols import PROTOCOLS
+from fatektool.transport.trace import LINK_TYPE, PCAP_MAGIC, RECEIVED, SENT, time_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -21,7 +22,7 @@ _RECORD: Final = 16
 _PSEUDO_HEADER: Final = 4
 _DIRECTIONS: Final = {b"\x01\x00": SENT, b"\x01\x01": RECEIVED}
 """A pseudo-header's first two bytes, version and direction."""
-_PROTOCOLS: Final = {code: name for name, code in PROTOCOL_CODES.items()}
+_PROTOCOLS: Final = {parts.trace_code: name for name, parts in PROTOCOLS.items()}
 _MAX_PACKET: Final = 1 << 20
 _TIME: Final = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?Z", re.ASCII)
 _HINT: Final = "expected a .ndjson or .pcap file that --trace wrote"

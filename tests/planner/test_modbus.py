@@ -20,8 +20,10 @@ from fatektool.protocol.commands import (
     WriteRegisters,
 )
 from fatektool.protocol.elements import Element
-from fatektool.protocol.modbus.codec import ASCII, RTU, TCP
+from fatektool.protocol.modbus.ascii import ASCII
 from fatektool.protocol.modbus.map import parse_map
+from fatektool.protocol.modbus.rtu import RTU
+from fatektool.protocol.modbus.tcp import TCP
 from tests.planner.exhaustive import Caps, Limited, least_read, least_write, places_of, wire_bytes
 from tests.planner.sets import (
     TURNAROUNDS,

@@ -11,7 +11,7 @@ from fatektool.planner import plan_reads, plan_writes
 from fatektool.protocol.elements import Element
 from fatektool.protocol.fatek.facon.codec import FACON
 from fatektool.protocol.fatek.mseries.codec import MSERIES
-from fatektool.protocol.modbus.codec import RTU
+from fatektool.protocol.modbus.rtu import RTU
 from tests.planner.exhaustive import READ_CAPS, WRITE_CAPS, Caps, least_read, least_write, wire_bytes
 from tests.planner.one_kind import least_of_registers
 from tests.planner.sets import TURNAROUNDS

@@ -6,12 +6,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fatektool.connection import CODECS
 from fatektool.errors import UsageError
 from fatektool.planner import plan_reads
 from fatektool.protocol.commands import ReadRegisters
 from fatektool.protocol.elements import KINDS, Element, Stretch
 from fatektool.protocol.fatek.facon.codec import FACON, FaconCodec
+from fatektool.protocol.registry import CODECS
 
 SYMBOLS = ["X", "M", "WM", "DWY", "R", "D", "DR", "RT", "RC", "DRC"]
 

@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fatektool.connection import CODECS
 from fatektool.errors import FrameError, PlcRefused, UsageError
 from fatektool.protocol.codec import Frame, require_commands
 from fatektool.protocol.commands import Command, Loopback, ReadPage, WritePage
 from fatektool.protocol.modbus.codec import ModbusCodec
+from fatektool.protocol.registry import CODECS
 from tests.protocol.decoding import decoded, drained, frames, one_frame
 from tests.protocol.spoken import FACON_SPOKEN, MSERIES_SPOKEN, SPOKEN, Spoken, each_protocol
 from tests.protocol.strategies import answers, cuts, exchanges_of, requests_of, stations

@@ -19,7 +19,7 @@ from fatektool.protocol.commands import (
 from fatektool.protocol.elements import Element
 from fatektool.protocol.explain import Explanation, Role
 from fatektool.protocol.fatek.facon.codec import FACON
-from fatektool.protocol.fatek.facon.explain import FaconExplainer
+from fatektool.protocol.registry import new_explainer
 from tests.protocol.decoding import framed
 from tests.protocol.strategies import exchanges, requests, stations
 from tests.protocol.vectors import EXAMPLES, FRAMES, MISPRINTS, NAMES, Example, Misprint
@@ -34,7 +34,7 @@ roles = st.sampled_from([Role.REQUEST, Role.ANSWER, Role.EITHER])
 
 def explained(*pieces: tuple[bytes, Role]) -> list[Explanation]:
     """A conversation explained; what must hold for any is asserted on the way."""
-    explainer = FaconExplainer()
+    explainer = new_explainer("facon")
     found = []
     for data, role in pieces:
         here = list(explainer.explain(data, role))

@@ -13,17 +13,15 @@ from fatektool.errors import UsageError
 from fatektool.protocol import frames
 from fatektool.protocol.commands import ReadBriefStatus
 from fatektool.protocol.explain import Role
-from fatektool.protocol.explainers import EXPLAINERS
 from fatektool.protocol.modbus.pdu import crc_bytes as pymodbus_crc
 from fatektool.protocol.plc_errors import MEANINGS
-from fatektool.protocol.registry import Codecs
+from fatektool.protocol.registry import codec_named, new_explainer
+from fatektool.protocols import PROTOCOLS
 from tests.protocol import vectors
 from tests.protocol.fatek.mseries import vectors as mseries_vectors
 
 if TYPE_CHECKING:
     from tests.protocol.vectors import Example
-
-PROTOCOLS = tuple(Codecs())
 
 
 def examples() -> list[tuple[str, Example]]:
@@ -69,7 +67,7 @@ def test_error_texts() -> None:
 
 
 @given(
-    st.sampled_from(PROTOCOLS),
+    st.sampled_from(list(PROTOCOLS)),
     st.integers(0, 0x7F),
     st.binary(max_size=60),
     st.integers(0, 247),
@@ -87,7 +85,7 @@ def test_any_command_with_any_data(
         return
     if protocol.startswith("modbus"):
         return  # a function that is in no map has no length that a decoder could know
-    decoder = frames.codec_of(protocol).decoder()
+    decoder = codec_named(protocol).decoder()
     decoder.feed(raw)
     found = decoder.next_frame()
     assert found is not None
@@ -98,7 +96,7 @@ def test_any_command_with_any_data(
 def test_an_error_is_explained_as_one(protocol: str) -> None:
     command = 0x03 if protocol.startswith("modbus") else 0x46
     raw = frames.error_frame(command, 2, 9, protocol)
-    (shown,) = EXPLAINERS[protocol]().explain(raw, Role.ANSWER)
+    (shown,) = new_explainer(protocol).explain(raw, Role.ANSWER)
     assert (shown.role, shown.station, shown.fault) == (Role.ANSWER, 9, None)
     assert fatektool.error_text(2, protocol) in " ".join(field.meaning for field in shown.fields)
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fatektool.client import Plc
-from fatektool.connection import CODECS, usual_format
+from fatektool.connection import usual_format
 from fatektool.exchange.link import Link
 from fatektool.protocol.elements import Element
+from fatektool.protocol.registry import codec_named
 from fatektool.simulator.build import Simulation, build_simulation
 from fatektool.transport.base import LineSettings
 from fatektool.transport.memory import MemoryTransport
@@ -78,7 +79,7 @@ class Rig:
             fill(device)
         self.transport = MemoryTransport(self.simulation.line(), "rig")
         self.line = LineSettings(format=usual_format(protocol))
-        self.codec = CODECS[protocol]
+        self.codec = codec_named(protocol)
         nonces = (b"%08X" % number for number in range(1 << 32))
         self.link = Link(
             self.transport, self.codec, 1, self.line, retries=retries, nonces=lambda: next(nonces)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from fatektool.cli import run
 from fatektool.program.archive import load_backup
 from fatektool.protocol.explain import Role
-from fatektool.protocol.explainers import EXPLAINERS
+from fatektool.protocol.registry import new_explainer
 from tests.cli.running import served
 from tests.wireshark.capture import FACON, INFO, MSERIES, RECEIVED, SCRIPT, SENT, capture, traced
 
@@ -64,7 +64,7 @@ def test_a_line_with_faults(tshark: Tshark, tmp_path: Path, monkeypatch: pytest.
 
 def seen_by_decode(data: bytes, role: Role) -> dict[str, Any]:
     """A record as ``decode`` explains it: noise, and of each frame station, command and checksum."""
-    frames = list(EXPLAINERS["facon"]().explain(data, role))
+    frames = list(new_explainer("facon").explain(data, role))
     return {
         "noise": [frame.raw.hex() for frame in frames if frame.command is None],
         "station": [str(frame.station) for frame in frames if frame.command is not None],
@@ -125,5 +125,5 @@ def test_it_finds_the_good_mseries_frames_that_decode_finds(tshark: Tshark) -> N
     for (_, data), packet in zip(records, packets, strict=True):
         found = zip(values([packet], "command"), values([packet], "checksum.status"), strict=True)
         good = [command for command, checksum in found if checksum == "1"]
-        explained = EXPLAINERS["mseries"]().explain(data, Role.EITHER)
+        explained = new_explainer("mseries").explain(data, Role.EITHER)
         assert good == [f"0x{frame.command:02x}" for frame in explained if frame.checksum_ok], data

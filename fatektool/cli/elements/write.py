@@ -12,12 +12,12 @@ from fatektool.cli.shared.addressee import look
 from fatektool.cli.shared.broadcast import broadcast_option, means_all, send_to_all
 from fatektool.cli.shared.modbus_map import modbus_map_option
 from fatektool.cli.shared.options import Connection, connection_options, yes_option
-from fatektool.connection import codec_named
 from fatektool.errors import LineError, PlcBusy, PlcError
 from fatektool.jobs.elements.assignment import parse_assignments
 from fatektool.jobs.elements.items import value_of
 from fatektool.jobs.elements.writes import write_elements
 from fatektool.planner import plan_writes
+from fatektool.protocol.registry import codec_named
 
 if TYPE_CHECKING:
     from fatektool.cli.shared.output import Voice

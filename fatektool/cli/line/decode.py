@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fatektool.cli.line.frame_view import explanation_document, field_lines
-from fatektool.cli.shared.options import PROTOCOLS, voice_options
+from fatektool.cli.shared.options import voice_options
 from fatektool.cli.shared.pairs import together
 from fatektool.errors import DataError, UsageError
 from fatektool.files.atomic import read_bounded
 from fatektool.protocol.explain import Explainer, Explanation, Role
-from fatektool.protocol.explainers import EXPLAINERS
+from fatektool.protocol.registry import new_explainer
+from fatektool.protocols import DEFAULT, PROTOCOLS
 from fatektool.transport.trace import RECEIVED
 from fatektool.transport.trace_reader import TraceRecord, read_trace
 
@@ -34,7 +35,7 @@ _ROLES = {"request": Role.REQUEST, "answer": Role.ANSWER}
 @click.argument("frames", nargs=-1, required=True, metavar="HEX…|FILE")
 @click.option(
     "--protocol",
-    type=click.Choice(PROTOCOLS),
+    type=click.Choice(list(PROTOCOLS)),
     help="Of the frames.  [default: what the trace tells, or facon]",
 )
 @click.option("--as", "role", type=click.Choice(list(_ROLES)), help="What the frames given as hex are.")
@@ -54,14 +55,14 @@ def decode_command(
     records, damage = _gathered(frames)
     together("role", holds=all(not record.time for record in records), needs="frames given as hex")
     protocol = protocol or _protocol_of(records)
-    explainer = EXPLAINERS[protocol]()
+    explainer = new_explainer(protocol)
     found = list(_explained(explainer, records, _ROLES.get(role or "", Role.EITHER)))
     if damage is not None:
         if found and not voice.json:  # what stands before the damage is worth a look
             voice.show({}, _lines(found, binary=explainer.binary))
         raise damage
     if not any(explanation.command is not None for _, explanation in found):
-        others = " or ".join(name for name in EXPLAINERS if name != protocol)
+        others = " or ".join(name for name in PROTOCOLS if name != protocol)
         raise DataError(
             f"no {protocol} frame in it: expected {explainer.form}", hint=f"or is it --protocol {others}?"
         )
@@ -79,7 +80,7 @@ def decode_command(
 
 def _protocol_of(records: Iterable[TraceRecord]) -> str:
     """The protocol that a trace tells of; FACON if it tells none that is known."""
-    return next((record.protocol for record in records if record.protocol in EXPLAINERS), "facon")
+    return next((record.protocol for record in records if record.protocol in PROTOCOLS), DEFAULT)
 
 
 def _gathered(frames: tuple[str, ...]) -> tuple[list[TraceRecord], DataError | None]:

@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fatektool.cli.line.frame_view import characters, explanation_document, field_lines
-from fatektool.cli.shared.options import PROTOCOLS, voice_options
+from fatektool.cli.shared.options import voice_options
 from fatektool.errors import UsageError
 from fatektool.jobs.command_operands import parse_hex
 from fatektool.jobs.command_words import MODBUS_FUNCTIONS, parse_code, parse_command
 from fatektool.protocol.explain import Role
-from fatektool.protocol.explainers import EXPLAINERS
-from fatektool.protocol.frames import answer_frame, codec_of, error_frame, frame, raw_frame
+from fatektool.protocol.frames import answer_frame, error_frame, frame, raw_frame
+from fatektool.protocol.registry import codec_named, new_explainer
+from fatektool.protocols import DEFAULT, PROTOCOLS
 
 if TYPE_CHECKING:
     from fatektool.cli.shared.output import Voice
@@ -29,7 +30,7 @@ _TCP = "modbus-tcp"
 )
 @click.argument("command")
 @click.argument("operands", nargs=-1, metavar="[OPERANDS]…")
-@click.option("--protocol", type=click.Choice(PROTOCOLS), default="facon", show_default=True)
+@click.option("--protocol", type=click.Choice(list(PROTOCOLS)), default=DEFAULT, show_default=True)
 @click.option("-s", "--station", type=click.IntRange(0, 255), default=1, show_default=True)
 @click.option(
     "--as",
@@ -83,7 +84,7 @@ def encode_command(
         raw = raw_frame(parse_code(command), content, answer=answer, **place)
     else:
         raw = _encoded(command, operands, answer=answer, **place)
-    explainer = EXPLAINERS[protocol]()
+    explainer = new_explainer(protocol)
     shown = _explained(explainer, raw, Role.ANSWER if answer else Role.REQUEST)
     document = {
         "schema": "fatektool.encode/1",
@@ -112,7 +113,7 @@ def _encoded(
     else:
         raw = frame(spoken.request, station, protocol, number=number)
     code = parse_code(command)
-    function = codec_of(protocol).code(spoken.request)
+    function = codec_named(protocol).code(spoken.request)
     if code in MODBUS_FUNCTIONS and code != function:
         what = f"{protocol} asks this by" if protocol.startswith("modbus-") else f"in {protocol} this is"
         raise UsageError(

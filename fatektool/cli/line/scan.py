@@ -10,7 +10,7 @@ import click
 from fatektool.cli import INTERRUPTED
 from fatektool.cli.line.documents import scan_document, station_document
 from fatektool.cli.line.network import look_for_modules, network_option
-from fatektool.cli.shared.options import PROTOCOLS, Connection, Several, connection_options
+from fatektool.cli.shared.options import Connection, Several, connection_options
 from fatektool.cli.shared.pairs import apart, together
 from fatektool.errors import UsageError
 from fatektool.exchange.no_answer import longer_timeout
@@ -18,6 +18,7 @@ from fatektool.files.times import utc
 from fatektool.jobs.linetest.scan import scan
 from fatektool.jobs.linetest.scan_result import ScanResult, Setting
 from fatektool.protocol.line_settings import BAUDS, FORMATS
+from fatektool.protocols import PROTOCOLS
 from fatektool.transport.base import LineSettings
 
 if TYPE_CHECKING:
@@ -88,7 +89,7 @@ class Bauds(Several):
 )
 @click.option(
     "--protocols",
-    type=Several(click.Choice(PROTOCOLS)),
+    type=Several(click.Choice(list(PROTOCOLS))),
     metavar="P,…",
     help="Protocols to try.  [default: that of --protocol]",
 )
@@ -167,7 +168,8 @@ def _settings(
     Raises:
         UsageError: a protocol for which no format has bits enough.
     """
-    from fatektool.connection import codec_named, usual_format
+    from fatektool.connection import usual_format
+    from fatektool.protocol.registry import codec_named
 
     found: dict[Setting, None] = {}
     for name in protocols or (connection.protocol,):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from fatektool.cli.shared.inventory_file import inventory_option, inventory_path, open_inventory
-from fatektool.cli.shared.options import PATH, PROTOCOLS, voice_options
+from fatektool.cli.shared.options import PATH, voice_options
 from fatektool.cli.shared.pairs import apart
 from fatektool.errors import DataError, FatektoolError, UsageError
 from fatektool.files.atomic import read_bounded, write_whole
@@ -18,6 +18,7 @@ from fatektool.inventory.entries import InventoryFault
 from fatektool.inventory.find import FILE_NAME, no_inventory
 from fatektool.inventory.load import MAX_INVENTORY, load_inventory
 from fatektool.inventory.select import select
+from fatektool.protocols import PROTOCOLS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -129,7 +130,7 @@ def _rows(entries: list[PlcEntry]) -> Iterator[str]:
 @click.option("--from", "scan", type=PATH, metavar="FILE|-", help="What 'scan --json' found: each station.")
 @click.option("-p", "--port", "target", metavar="TARGET", help="Where the PLC is.")
 @click.option("-s", "--station", type=click.IntRange(0, 255), help="Its station.  [default: 1]")
-@click.option("--protocol", type=click.Choice(PROTOCOLS), help="What it speaks.")
+@click.option("--protocol", type=click.Choice(list(PROTOCOLS)), help="What it speaks.")
 @click.option("--baud", type=int, help="Speed of the serial line.")
 @click.option("--format", "line_format", metavar="7E1", help="Data bits, parity, stop bits.")
 @click.option("--tag", "tags", multiple=True, help="A word for --select; repeat for more.")

@@ -16,6 +16,7 @@ from fatektool.cli.shared.output import Voice
 from fatektool.cli.shared.station import Station, require_station
 from fatektool.cli.shared.unfinished import warn_of_unfinished
 from fatektool.errors import LineReadOnly, UsageError
+from fatektool.protocols import DEFAULT, PROTOCOLS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -59,7 +60,7 @@ class Several(click.ParamType):  # type: ignore[type-arg]  # a generic in the ne
 F = TypeVar("F", bound="Callable[..., Any]")
 
 PATH = FilePath()
-PROTOCOLS = ("facon", "mseries", "modbus-rtu", "modbus-ascii", "modbus-tcp")
+USUAL_FORMATS = "7E1; 8E1 for mseries and modbus-rtu"
 _IN_INVENTORY = {
     "station": "station",
     "protocol": "protocol",
@@ -185,7 +186,7 @@ def connection_options(function: F) -> F:
         "--format",
         "line_format",
         metavar="7E1",
-        help="Data bits, parity, stop bits.  [default: 7E1; 8E1 for mseries and modbus-rtu]",
+        help=f"Data bits, parity, stop bits.  [default: {USUAL_FORMATS}]",
     )
     return line_format(connection_options_but_format(function))
 
@@ -207,8 +208,8 @@ def connection_options_but_format(function: F) -> F:
     @click.option("-s", "--station", type=Station(1, 254), default=1, show_default=True, help="Its station.")
     @click.option(
         "--protocol",
-        type=click.Choice(PROTOCOLS),
-        default="facon",
+        type=click.Choice(list(PROTOCOLS)),
+        default=DEFAULT,
         show_default=True,
         help="What the PLC speaks: facon (FB, FBE, FBN, FBs), mseries (M-series), or Modbus (FBs).",
     )

@@ -27,7 +27,7 @@ def require_station(station: int, protocol: str, *, broadcast: bool | None) -> N
     Raises:
         BadParameter: no PLC is asked under it.
     """
-    from fatektool.connection import codec_named
+    from fatektool.protocol.registry import codec_named
 
     if station not in {0, 255} or station in codec_named(protocol).stations or (station == 0 and broadcast):
         return  # any other number that the protocol lacks is refused in its own words when the line is opened

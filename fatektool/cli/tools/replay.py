@@ -8,8 +8,8 @@ from click.core import ParameterSource
 
 from fatektool.errors import DataError, UsageError
 from fatektool.files.atomic import read_bounded
+from fatektool.protocols import PROTOCOLS
 from fatektool.simulator.replay import Recorded, Replay
-from fatektool.simulator.slaves.registry import SLAVES
 from fatektool.transport.trace import SENT
 from fatektool.transport.trace_reader import read_trace
 
@@ -52,7 +52,7 @@ def open_replay(path: Path, protocol: str, speed: float, context: click.Context,
             )
     trace = list(read_trace(read_bounded(path, _MAX_TRACE), str(path)))
     if context.get_parameter_source("protocol") is ParameterSource.DEFAULT:
-        protocol = next((record.protocol for record in trace if record.protocol in SLAVES), protocol)
+        protocol = next((record.protocol for record in trace if record.protocol in PROTOCOLS), protocol)
     records = [Recorded(record.time_s, record.direction == SENT, record.data) for record in trace]
     try:
         return Replay(

@@ -9,16 +9,17 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fatektool.cli.shared.options import PATH, voice_options
+from fatektool.cli.shared.options import PATH, USUAL_FORMATS, voice_options
 from fatektool.cli.shared.output import print_json
 from fatektool.cli.shared.pairs import apart, given, together
 from fatektool.errors import UsageError
+from fatektool.protocols import DEFAULT, PROTOCOLS
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.faults import PROBABILITY_KINDS
 from fatektool.simulator.listen.servers import Server
 from fatektool.simulator.models import MODELS
 from fatektool.simulator.plc import FLAGS
-from fatektool.simulator.slaves.registry import DEFAULT_PROTOCOL, SLAVES
+from fatektool.simulator.slaves.registry import SLAVES
 from fatektool.transport.base import LineSettings
 from fatektool.transport.discovery import MODULE_PORT
 
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 
 _DOOR = re.compile(r"(?:\[([^\]]+)\]|([^:]*)):(\d{1,5})|(\d{1,5})", re.ASCII)
 
-_DEFAULT_MODELS = ", ".join(f"{spoken.model} with {name}" for name, spoken in SLAVES.items())
+_DEFAULT_MODELS = ", ".join(f"{slave.model} with {name}" for name, slave in SLAVES.items())
 
 
 @click.command(
@@ -46,7 +47,7 @@ _DEFAULT_MODELS = ", ".join(f"{spoken.model} with {name}" for name, spoken in SL
     help="Answer 'scan --network' as an Ethernet module does; the port is 111 unless named.",
 )
 @click.option("--pty", multiple=True, metavar="LINK", help="Be a serial port: a pty, LINK leads to it.")
-@click.option("--protocol", type=click.Choice(list(SLAVES)), default=DEFAULT_PROTOCOL, show_default=True)
+@click.option("--protocol", type=click.Choice(list(PROTOCOLS)), default=DEFAULT, show_default=True)
 @click.option("--station", multiple=True, type=click.IntRange(1, 254), help="A station; may be repeated.")
 @click.option(
     "--model",
@@ -76,7 +77,7 @@ _DEFAULT_MODELS = ", ".join(f"{spoken.model} with {name}" for name, spoken in SL
 @click.option(
     "--format",
     "line_format",
-    help="Bits a character, for the pace.  [default: 7E1; 8E1 for mseries and modbus-rtu]",
+    help=f"Bits a character, for the pace.  [default: {USUAL_FORMATS}]",
 )
 @click.option("--scan-ms", type=click.FloatRange(0, 60_000), default=0.0, help="Time to answer.")
 @click.option(

@@ -7,8 +7,8 @@ import os
 import threading
 from typing import TYPE_CHECKING, Final
 
-from fatektool.connection import codec_named
 from fatektool.errors import LineError
+from fatektool.protocol.registry import codec_named
 from fatektool.transport.serial_line.url import host_of
 from fatektool.transport.serial_line.url import line_of as serial_line
 from fatektool.transport.target import Target, TargetKind

@@ -18,46 +18,20 @@ from fatektool.errors import FatektoolError, UsageError
 from fatektool.protocol.commands import ReadDiscretes, ReadRegisters
 from fatektool.protocol.elements import Element
 from fatektool.protocol.modbus import data as modbus_data
-from fatektool.protocol.modbus import frame as modbus_frame
 from fatektool.protocol.modbus import sizes as modbus_sizes
-from fatektool.protocol.modbus.frame import AsciiDecoder, RtuDecoder, TcpDecoder
+from fatektool.protocol.modbus.framing import MAX_PDU
 from fatektool.protocol.modbus.map import STANDARD
+from fatektool.protocol.modbus.pdu import EXCEPTION
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterator
+    from collections.abc import Collection, Iterator
 
     from fatektool.protocol.codec import Decoder, Frame
     from fatektool.protocol.commands import Command, Request
+    from fatektool.protocol.modbus.framing import Framing
     from fatektool.protocol.modbus.map import ModbusMap
 
 A = TypeVar("A")
-
-
-@dataclass(frozen=True, slots=True)
-class Framing:
-    """What RTU, ASCII and TCP differ in.
-
-    Attributes:
-        name: of ``--protocol``.
-        encode: station, PDU and number as a frame.
-        decoder: a new decoder.
-        size: length of a frame around a PDU of so many bytes.
-        data_bits: that a serial line needs; None if it is not spoken there.
-        tcp_port: unless one is named.
-        stations: that one PLC can be asked under.
-        numbers: how many requests can be told apart by the number that their answers repeat.
-        quiet_chars: the silence in characters before a frame.
-    """
-
-    name: str
-    encode: Callable[[int, bytes, int], bytes]
-    decoder: Callable[[], Decoder]
-    size: Callable[[int], int]
-    data_bits: int | None
-    tcp_port: int | None = None
-    stations: range = range(1, 1 + modbus_frame.LAST_STATION)
-    numbers: int = 1
-    quiet_chars: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -72,8 +46,9 @@ class ModbusCodec:
     framing: Framing
     map: ModbusMap = STANDARD
 
-    commands: Final[frozenset[Command]] = modbus_data.COMMANDS
+    commands: Final[frozenset[Command]] = modbus_sizes.COMMANDS
     loopback_alphabet: Final[bytes] = b""
+    last_error: Final[int] = 0xFF
 
     def mapped(self, modbus_map: ModbusMap) -> ModbusCodec:
         """The same over another map."""
@@ -144,6 +119,37 @@ class ModbusCodec:
         """The frame in which a PLC gives this answer."""
         return self.framing.encode(station, modbus_data.answer_pdu(request, answer, self.map), number)
 
+    def encode_raw(
+        self,
+        station: int,
+        command: int,
+        data: bytes,
+        number: int = 0,
+        *,
+        answer: bool = False,
+    ) -> bytes:
+        """A frame with any function and data; requests and answers have the same form."""
+        del answer
+        if station and station not in self.stations:
+            raise UsageError(f"station: expected 0 to {self.stations[-1]}, got {station}")
+        if len(data) >= MAX_PDU:
+            raise UsageError(f"frame data: expected at most {MAX_PDU - 1} bytes, got {len(data)}")
+        return self.framing.encode(station, bytes([command]) + data, number)
+
+    def encode_refusal(self, station: int, command: int, code: int, number: int = 0) -> bytes:
+        """The exception that a PLC answers to this function."""
+        return self.encode_raw(station, command | EXCEPTION, bytes([code]), number)
+
+    def checksum(self, data: bytes) -> bytes:
+        """The CRC or LRC of station and PDU."""
+        if self.framing.checksum is None:
+            raise UsageError(f"{self.name} frames have no checksum: the network has its own")
+        return self.framing.checksum(data)
+
+    def error_text(self, code: int) -> str:
+        """An exception in words."""
+        return modbus_data.exception_text(code)
+
     def request_bytes(self, request: Request[A]) -> int:
         """Length of the frame that asks this, in bytes."""
         return self.framing.size(modbus_sizes.request_size(request))
@@ -210,24 +216,3 @@ class ModbusCodec:
 
 _LONGEST_FENCE: Final = 32
 """In registers, or bytes of coils: long enough for many to differ, short enough to cost little."""
-
-RTU: Final = ModbusCodec(
-    Framing(
-        "modbus-rtu", modbus_frame.rtu_bytes, RtuDecoder, lambda size: size + 3, data_bits=8, quiet_chars=3.5
-    )
-)
-ASCII: Final = ModbusCodec(
-    Framing("modbus-ascii", modbus_frame.ascii_bytes, AsciiDecoder, lambda size: 2 * size + 7, data_bits=7)
-)
-TCP: Final = ModbusCodec(
-    Framing(
-        "modbus-tcp",
-        modbus_frame.tcp_bytes,
-        TcpDecoder,
-        lambda size: size + modbus_frame.TCP_HEADER,
-        data_bits=None,
-        tcp_port=502,
-        stations=range(256),
-        numbers=1 << 16,
-    )
-)

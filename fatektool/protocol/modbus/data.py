@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
 from fatektool.errors import FrameError, GatewayTimeout, PlcBusy, PlcRefused, UsageError
 from fatektool.protocol.commands import (
-    Command,
     Control,
     ControlDiscrete,
     ReadDiscretes,
@@ -37,15 +36,6 @@ if TYPE_CHECKING:
 
 A = TypeVar("A")
 
-COMMANDS: Final = frozenset(
-    {
-        Command.READ_DISCRETES,
-        Command.WRITE_DISCRETES,
-        Command.READ_REGISTERS,
-        Command.WRITE_REGISTERS,
-        Command.CONTROL_DISCRETE,
-    }
-)
 MEANINGS: Final = {
     0x01: "illegal function",
     0x02: "illegal data address, not in the PLC's Modbus map",
@@ -228,6 +218,13 @@ def answer_pdu(request: Request[A], answer: A, modbus_map: ModbusMap) -> bytes:
     return modbus_pdu.answer_bytes(Pdu(function, registers=registers))
 
 
+def exception_text(code: int) -> str:
+    """What an exception means, in words."""
+    if code in GATEWAY:
+        return f"the gateway says: {GATEWAY[code]}"
+    return MEANINGS.get(code, "a code that Modbus does not list")
+
+
 def _check_echo(request: Request[Any], said: Pdu, offset: int, count: int, pdu: bytes) -> None:
     """A write's answer repeats where it wrote, and what or how much."""
     values = _written(request)
@@ -253,11 +250,11 @@ def _refusal(request: Request[Any], said: Pdu) -> PlcRefused | PlcBusy | Gateway
     code = said.exception
     if code in GATEWAY:
         return GatewayTimeout(
-            f"the gateway says: {GATEWAY[code]} (exception {code:02X})",
+            f"{exception_text(code)} (exception {code:02X})",
             handed_on=code != _NO_PATH,
             hint=_AT_THE_GATEWAY[code],
         )
-    meaning = MEANINGS.get(code, "a code that Modbus does not list")
+    meaning = exception_text(code)
     if code in _BUSY:
         return PlcBusy(
             f"the PLC did not {asked(request)} (Modbus function {said.function:02X}): exception {code:02X}, "

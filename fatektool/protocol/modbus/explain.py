@@ -8,26 +8,22 @@ before it, if there is one, names its values. Elements are those of the standard
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, ClassVar, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from fatektool.errors import FrameError
 from fatektool.protocol.explain import Explanation, Field, Role
 from fatektool.protocol.modbus import pdu as modbus_pdu
-from fatektool.protocol.modbus.data import AREAS, MEANINGS
-from fatektool.protocol.modbus.frame import (
-    LAST_STATION,
-    TCP_HEADER,
-    AsciiDecoder,
-    RtuDecoder,
-    TcpDecoder,
-)
+from fatektool.protocol.modbus.data import AREAS, exception_text
+from fatektool.protocol.modbus.framing import LAST_STATION
 from fatektool.protocol.modbus.map import STANDARD, Reference
 from fatektool.protocol.modbus.pdu import EXCEPTION, FUNCTION_WORDS, OF_BITS, READS, Pdu
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterable, Iterator
 
     from fatektool.protocol.codec import Decoder, Frame
+    from fatektool.protocol.modbus.codec import ModbusCodec
+    from fatektool.protocol.modbus.framing import FramePart
 
 _PIECE: Final = 1 << 15
 """What a decoder is fed at once: it keeps no more than 64 KiB, and a record of a trace may hold more."""
@@ -41,18 +37,23 @@ class _Part(NamedTuple):
     meaning: str
 
 
-class _Explainer:
-    """Explains a conversation, piece by piece, in the order it was spoken."""
+class ModbusExplainer:
+    """Explains a conversation in one framing, piece by piece, in the order it was sent."""
 
-    form: ClassVar[str]
-    binary: ClassVar[bool] = True
-    octet: ClassVar[int] = 1  # bytes on the wire for one of content
-    head: ClassVar[int] = 0  # bytes before the station
-    tail: ClassVar[int] = 0  # bytes behind the PDU
-    decoder: ClassVar[Callable[[], Decoder]]
-
-    def __init__(self) -> None:
+    def __init__(self, codec: ModbusCodec) -> None:
+        self._framing = codec.framing
+        self._head = sum(part.size for part in codec.framing.before)
         self._last: dict[tuple[int, int, int], Pdu] = {}
+
+    @property
+    def form(self) -> str:
+        """What a frame looks like, in words."""
+        return self._framing.form
+
+    @property
+    def binary(self) -> bool:
+        """False for the characters of ASCII."""
+        return self._framing.octet == 1
 
     def explain(self, data: bytes, role: Role = Role.EITHER) -> Iterator[Explanation]:
         """Explain all frames in a piece of the conversation, and the bytes that are none.
@@ -61,7 +62,7 @@ class _Explainer:
             data: the bytes.
             role: REQUEST or ANSWER if the direction is known.
         """
-        decoder = type(self).decoder()
+        decoder = self._framing.decoder()
         for at in range(0, len(data), _PIECE):
             decoder.feed(data[at : at + _PIECE])
             yield from self._frames(decoder, role)
@@ -87,8 +88,7 @@ class _Explainer:
             parts = [_Part("data", len(frame.data) - 1, "in no form of this function")]
         elif said.exception:
             self._last.pop(key, None)
-            meaning = MEANINGS.get(said.exception, "a code that is not listed")
-            parts = [_Part("exception", 1, f"REFUSED: {meaning}")]
+            parts = [_Part("exception", 1, f"REFUSED: {exception_text(said.exception)}")]
         elif role is Role.ANSWER:
             parts = _answer_parts(said, self._last.pop(key, None))
         else:
@@ -100,92 +100,45 @@ class _Explainer:
             tuple(self._fields(frame, parts)),
             frame.station,
             frame.command,
-            True if self.tail else None,
+            True if self._framing.behind else None,
             fault,
         )
 
     def _fields(self, frame: Frame, parts: list[_Part]) -> Iterator[Field]:
-        yield from self.before(frame.raw)
+        yield from _around(self._framing.before, frame.raw[: self._head])
         function = frame.data[0]
         words = FUNCTION_WORDS.get(frame.command, "not in the map")
         refused = ", refused" if function & EXCEPTION else ""
-        at = self.head
+        at = self._head
         for part in (
-            _Part("station", 1, self.who(frame.station)),
+            _Part("station", 1, self._who(frame.station)),
             _Part("function", 1, f"{words}{refused}"),
             *parts,
         ):
-            end = at + part.size * self.octet
+            end = at + part.size * self._framing.octet
             if part.size:
                 yield Field(part.name, frame.raw[at:end], part.meaning)
             at = end
-        yield from self.behind(frame.raw)
+        yield from _around(self._framing.behind, frame.raw[at:])
 
-    def who(self, station: int) -> str:
+    def _who(self, station: int) -> str:
         """A station in words."""
+        if station in self._framing.own_units:
+            return f"{station}, the PLC at this address"
         if not station:
             return "all (broadcast), nobody answers"
-        return f"{station}" if station <= LAST_STATION else f"{station}, reserved on serial lines"
-
-    def before(self, raw: bytes) -> Iterator[Field]:
-        """The fields before the station."""
-        del raw
-        yield from ()
-
-    def behind(self, raw: bytes) -> Iterator[Field]:
-        """The fields behind the PDU."""
-        del raw
-        yield from ()
+        if station > LAST_STATION and self._framing.data_bits is not None:
+            return f"{station}, reserved on serial lines"
+        return f"{station}"
 
 
-class RtuExplainer(_Explainer):
-    """RTU frames."""
-
-    form = "station, function, data, a CRC"
-    tail = 2
-    decoder = RtuDecoder
-
-    def behind(self, raw: bytes) -> Iterator[Field]:
-        """The CRC."""
-        yield Field("CRC", raw[-2:], "right")
-
-
-class AsciiExplainer(_Explainer):
-    """ASCII frames."""
-
-    form = "a colon, hex digits, an LRC, CR LF"
-    binary = False
-    octet = 2
-    head = 1
-    tail = 4
-    decoder = AsciiDecoder
-
-    def before(self, raw: bytes) -> Iterator[Field]:
-        """The colon."""
-        yield Field("start", raw[:1], "begins a frame")
-
-    def behind(self, raw: bytes) -> Iterator[Field]:
-        """The LRC and the end."""
-        yield Field("LRC", raw[-4:-2], "right")
-        yield Field("end", raw[-2:], "CR LF")
-
-
-class TcpExplainer(_Explainer):
-    """TCP frames."""
-
-    form = "a number, 00 00, a length, station, function, data"
-    head = TCP_HEADER - 1
-    decoder = TcpDecoder
-
-    def who(self, station: int) -> str:
-        """A unit in words: 0 and 255 are the device at the address itself, unless a gateway is there."""
-        return f"{station}, the PLC at this address" if station in {0, 255} else f"{station}"
-
-    def before(self, raw: bytes) -> Iterator[Field]:
-        """The header up to the station."""
-        yield Field("number", raw[:2], f"{int.from_bytes(raw[:2], 'big')}; the answer repeats it")
-        yield Field("protocol", raw[2:4], "Modbus")
-        yield Field("length", raw[4:6], f"{int.from_bytes(raw[4:6], 'big')} bytes follow")
+def _around(parts: Iterable[FramePart], raw: bytes) -> Iterator[Field]:
+    """The fields before the station, or behind the PDU."""
+    at = 0
+    for part in parts:
+        content = raw[at : at + part.size]
+        yield Field(part.name, content, part.meaning(content))
+        at += part.size
 
 
 def _understood(pdu: bytes, role: Role, *, asked: bool) -> tuple[Role, Pdu | None, str | None]:

@@ -18,21 +18,33 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.errors import UsageError
-from fatektool.protocol.commands import (
-    ControlDiscrete,
-    ReadDiscretes,
-    ReadRegisters,
-    Request,
-    WriteDiscretes,
-    WriteRegisters,
-)
+from fatektool.protocol.commands import Command
 from fatektool.protocol.elements import KINDS
+from fatektool.protocol.modbus import pdu as modbus_pdu
+from fatektool.protocol.modbus.pdu import EXCEPTION, FUNCTION_WORDS, READS
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fatektool.protocol.commands import (
+        ControlDiscrete,
+        ReadDiscretes,
+        ReadRegisters,
+        Request,
+        WriteDiscretes,
+        WriteRegisters,
+    )
     from fatektool.protocol.elements import Element
 
 _MOST: Final = {True: {True: 1968, False: 2000}, False: {True: 123, False: 125}}
 """How many bits or registers, by: of bits, writes."""
+
+TELLING: Final = 6
+"""Of a PDU, so many bytes show its length."""
+
+_LAST_EXCEPTION: Final = 0x0B
+_MOST_READ: Final = 250
+_MOST_WRITTEN: Final = 246
 
 
 def units(symbol: str, count: int) -> int:
@@ -86,19 +98,74 @@ def first_of(request: Request[Any]) -> Element:
     Raises:
         UsageError: Modbus has no such request.
     """
-    match request:
-        case ReadDiscretes(first) | ReadRegisters(first) | WriteDiscretes(first) | WriteRegisters(first):
-            return first
-        case ControlDiscrete(_, element):
-            return element
-    raise UsageError(f"Modbus has no such command: {request.command.words} ({request.command:02X})")
+    return _run_of(request)[0]
 
 
 def count_of(request: Request[Any]) -> int:
     """How many elements a request names."""
-    match request:
-        case ReadDiscretes(_, count) | ReadRegisters(_, count):
-            return count
-        case WriteDiscretes(_, values) | WriteRegisters(_, values):
-            return len(values)
-    return 1
+    return _run_of(request)[1]
+
+
+def _run_of(request: Request[Any]) -> tuple[Element, int]:
+    run = _RUNS.get(request.command)
+    if run is None:
+        raise UsageError(f"Modbus has no such command: {request.command.words} ({request.command:02X})")
+    return run(request)
+
+
+def _read_run(request: ReadDiscretes | ReadRegisters) -> tuple[Element, int]:
+    return request.first, request.count
+
+
+def _written_run(request: WriteDiscretes | WriteRegisters) -> tuple[Element, int]:
+    return request.first, len(request.values)
+
+
+def _one(request: ControlDiscrete) -> tuple[Element, int]:
+    return request.element, 1
+
+
+_RUNS: Final[dict[Command, Callable[[Any], tuple[Element, int]]]] = {
+    Command.CONTROL_DISCRETE: _one,
+    Command.READ_DISCRETES: _read_run,
+    Command.WRITE_DISCRETES: _written_run,
+    Command.READ_REGISTERS: _read_run,
+    Command.WRITE_REGISTERS: _written_run,
+}
+"""What Modbus can ask, and which elements each request names: the first, and how many."""
+
+COMMANDS: Final = frozenset(_RUNS)
+
+
+def pdu_sizes(  # noqa: PLR0911  # a way out a form
+    buffer: bytearray, at: int, end: int
+) -> tuple[int, ...] | None:
+    """How long the PDU that begins here may be; None if it cannot be said yet.
+
+    Args:
+        buffer: the bytes.
+        at: where its function stands.
+        end: behind what needs to be there to say more.
+    """
+    head = buffer[at:end]
+    if not head:
+        return None
+    function = head[0]
+    if function & EXCEPTION:
+        known = function & ~EXCEPTION in FUNCTION_WORDS
+        if len(head) > 1:
+            known = known and 1 <= head[1] <= _LAST_EXCEPTION
+        return (2,) if known else ()
+    if function not in FUNCTION_WORDS:
+        return ()
+    if function in {modbus_pdu.WRITE_COIL, modbus_pdu.WRITE_REGISTER}:
+        return (5,)
+    if len(head) < 2:
+        return None
+    if function in READS:
+        even = function in {modbus_pdu.READ_COILS, modbus_pdu.READ_DISCRETE_INPUTS} or head[1] % 2 == 0
+        answer = (2 + head[1],) if 1 <= head[1] <= _MOST_READ and even else ()
+        return tuple(sorted({5, *answer}))
+    if len(head) < 6:
+        return None
+    return (5, 6 + head[5]) if 1 <= head[5] <= _MOST_WRITTEN else (5,)

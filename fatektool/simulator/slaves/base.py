@@ -2,7 +2,7 @@
 
 A line (see ``line``) carries bytes, paces them and spoils them; it knows no protocol. A slave cuts
 requests out of the bytes and answers them from its PLCs. To add a protocol, write one class with
-these methods over ``SimulatedPlc``'s operations, and name it in ``slaves``.
+these methods over ``SimulatedPlc``'s operations, with a ``SlaveType`` for ``protocols.py``.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from enum import Enum
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from fatektool.simulator.plc import SimulatedPlc
 
@@ -56,6 +56,23 @@ def addressed(plcs: Mapping[int, SimulatedPlc], station: int) -> SimulatedPlc | 
     if found is not None or station == BROADCAST:
         return found
     return next((plc for plc in plcs.values() if not plc.checks_station), None)
+
+
+class SlaveType(NamedTuple):
+    """One protocol of the simulator.
+
+    Attributes:
+        make: a new slave for a line, over the PLCs that all lines share.
+        model: a name of ``MODELS``: what the PLCs are, unless one is named.
+        bits_per_char: of its lines, unless a format is named: 10 for 7E1, 11 for 8E1.
+        make_without_error_character: the same with answers to 4F and 53 as the figures of the FACON paper
+            show them; None for a protocol whose papers agree.
+    """
+
+    make: Callable[[Mapping[int, SimulatedPlc]], Slave]
+    model: str
+    bits_per_char: float
+    make_without_error_character: Callable[[Mapping[int, SimulatedPlc]], Slave] | None = None
 
 
 class Slave(Protocol):

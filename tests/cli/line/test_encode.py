@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from fatektool.errors import UsageError
 from fatektool.jobs.command_words import FORMS, MODBUS_FUNCTIONS, NAMES, parse_command
 from fatektool.protocol.commands import Command
-from fatektool.protocol.frames import answer_frame, codec_of, frame
+from fatektool.protocol.frames import answer_frame, frame
+from fatektool.protocol.registry import codec_named
 from tests.protocol import vectors
 from tests.protocol.fatek.mseries import vectors as mseries_vectors
 from tests.protocol.strategies import exchanges
@@ -227,7 +228,7 @@ def test_any_words_are_a_frame_or_refused(
         )
     except UsageError:
         return
-    decoder = codec_of(protocol).decoder()
+    decoder = codec_named(protocol).decoder()
     decoder.feed(raw)
     found = decoder.next_frame()
     assert found is not None

@@ -11,10 +11,10 @@ from fatektool.errors import NoAnswer, UsageError
 from fatektool.jobs.elements.writes import write_elements
 from fatektool.protocol.commands import WriteRegisters
 from fatektool.protocol.elements import Element
-from fatektool.protocol.modbus.codec import TCP
+from fatektool.protocol.modbus.tcp import TCP
 from fatektool.simulator.build import build_plcs
-from fatektool.simulator.slaves.modbus.frame import TcpFraming
 from fatektool.simulator.slaves.modbus.slave import ModbusSlave
+from fatektool.simulator.slaves.modbus.tcp import TcpFraming
 from tests.exchange.modbus.peer import Peer, linked
 
 if TYPE_CHECKING:

@@ -7,10 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from fatektool.cli.shared.options import PROTOCOLS
-from fatektool.connection import CODECS
 from fatektool.program.archive import save_backup
-from fatektool.protocol.explainers import EXPLAINERS
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.listen.servers import Server
 from tests.cli.running import NEW, one_line
@@ -207,7 +204,3 @@ def test_a_simulated_plc_in_a_file(cli: Cli, place: Path) -> None:
         "3",
     ]
     assert cli("read", "R1", "-p", target).out.split() == ["R1", "3"]  # the same memory
-
-
-def test_the_option_names_every_protocol() -> None:
-    assert tuple(CODECS) == PROTOCOLS == tuple(EXPLAINERS)

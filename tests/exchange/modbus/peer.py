@@ -6,7 +6,7 @@ import itertools
 from typing import TYPE_CHECKING
 
 from fatektool.exchange.link import Link
-from fatektool.protocol.modbus.codec import RTU
+from fatektool.protocol.modbus.rtu import RTU
 from fatektool.transport.base import LineSettings
 from fatektool.transport.memory import MemoryTransport
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import pytest
 
 from fatektool.errors import NoAnswer, PlcRefused
@@ -14,9 +16,14 @@ from fatektool.protocol.commands import (
     WriteRegisters,
 )
 from fatektool.protocol.elements import Element
-from fatektool.protocol.modbus.codec import ASCII, RTU, TCP, ModbusCodec
+from fatektool.protocol.modbus.ascii import ASCII
 from fatektool.protocol.modbus.map import parse_map
+from fatektool.protocol.modbus.rtu import RTU
+from fatektool.protocol.modbus.tcp import TCP
 from tests.exchange.modbus.peer import LINE, Peer, Pieces, linked, registers, sealed
+
+if TYPE_CHECKING:
+    from fatektool.protocol.modbus.codec import ModbusCodec
 
 R100, R200 = (ReadRegisters(Element("R", address), 1) for address in (100, 200))
 

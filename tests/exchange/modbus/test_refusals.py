@@ -12,14 +12,17 @@ from fatektool.jobs.elements.reads import read_elements
 from fatektool.jobs.elements.writes import write_elements
 from fatektool.protocol.commands import Control, ControlDiscrete, ReadRegisters, WriteRegisters
 from fatektool.protocol.elements import Element
-from fatektool.protocol.modbus.codec import ASCII, RTU, TCP, ModbusCodec
+from fatektool.protocol.modbus.ascii import ASCII
 from fatektool.protocol.modbus.data import GATEWAY
+from fatektool.protocol.modbus.rtu import RTU
+from fatektool.protocol.modbus.tcp import TCP
 from tests.exchange.modbus.peer import Peer, Pieces, linked
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fatektool.protocol.commands import Request
+    from fatektool.protocol.modbus.codec import ModbusCodec
 
 R105 = Element("R", 105)
 TO_R105, FROM_R105 = WriteRegisters(R105, (7,)), ReadRegisters(R105, 1)

@@ -11,10 +11,12 @@ from fatektool.protocol.commands import ReadRegisters
 from fatektool.protocol.elements import Element
 from fatektool.protocol.explain import Role
 from fatektool.protocol.modbus import pdu as modbus_pdu
-from fatektool.protocol.modbus.codec import ASCII, RTU, TCP
+from fatektool.protocol.modbus.ascii import ASCII
 from fatektool.protocol.modbus.data import MEANINGS
-from fatektool.protocol.modbus.explain import RtuExplainer
 from fatektool.protocol.modbus.map import STANDARD, Reference
+from fatektool.protocol.modbus.rtu import RTU
+from fatektool.protocol.modbus.tcp import TCP
+from fatektool.protocol.registry import new_explainer
 from tests.protocol.fatek.facon.test_docs import Shown, blocks, table
 from tests.root import DOCS
 
@@ -27,7 +29,7 @@ BLOCKS = blocks(DOC, "modbus-rtu")
 
 @pytest.mark.parametrize("frames", [frames for _, frames in BLOCKS], ids=[str(n) for n in range(len(BLOCKS))])
 def test_examples(frames: Sequence[Shown]) -> None:
-    explainer = RtuExplainer()
+    explainer = new_explainer("modbus-rtu")
     for shown in frames:
         role = Role.REQUEST if shown.kind == "request" else Role.ANSWER
         (explanation,) = explainer.explain(shown.raw, role)

@@ -10,7 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fatektool.errors import FrameError, UsageError
-from fatektool.protocol.modbus.codec import ASCII, RTU, TCP, ModbusCodec
+from fatektool.protocol.modbus.ascii import ASCII
+from fatektool.protocol.modbus.rtu import RTU
+from fatektool.protocol.modbus.tcp import TCP
 from tests.protocol.decoding import decoded, drained, frames, one_frame
 from tests.protocol.modbus.vectors import (
     EXCEPTION,
@@ -26,6 +28,8 @@ from tests.protocol.strategies import cuts
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from fatektool.protocol.modbus.codec import ModbusCodec
 
 
 @dataclass(frozen=True)

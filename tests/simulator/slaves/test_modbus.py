@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 import pytest
 
 from fatektool.simulator.build import build_plcs
-from fatektool.simulator.slaves.modbus.frame import AsciiFraming, RtuFraming, TcpFraming
+from fatektool.simulator.slaves.modbus.ascii import AsciiFraming
+from fatektool.simulator.slaves.modbus.rtu import RtuFraming
 from fatektool.simulator.slaves.modbus.slave import ModbusSlave
+from fatektool.simulator.slaves.modbus.tcp import TcpFraming
 from fatektool.simulator.state import dump_state, parse_state
 from tests.exchange.modbus.peer import sealed
 from tests.protocol.modbus.vectors import EXCHANGES, ascii_frame, rtu, tcp
@@ -18,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fatektool.simulator.plc import SimulatedPlc
-    from fatektool.simulator.slaves.modbus.frame import Framing
+    from fatektool.simulator.slaves.modbus.framing import Framing
 
 
 @pytest.fixture

@@ -19,12 +19,12 @@ from zlib import adler32
 
 from fatektool.errors import FrameError, UsageError
 from fatektool.protocol.codec import Frame
-from fatektool.protocol.commands import Command
 from fatektool.protocol.fatek.commands import FatekCommands
 from fatektool.protocol.fatek.facon import data as facon_data
+from fatektool.protocol.plc_errors import meaning_of
 
 if TYPE_CHECKING:
-    from fatektool.protocol.commands import Request
+    from fatektool.protocol.commands import Command, Request
 
 A = TypeVar("A")
 
@@ -156,7 +156,8 @@ class FaconCodec(FatekCommands):
     """FACON ASCII as a ``Codec``."""
 
     name: Final = "facon"
-    commands: Final[frozenset[Command]] = frozenset(Command)
+    commands: Final[frozenset[Command]] = facon_data.COMMANDS
+    last_error: Final = 0xF
     loopback_alphabet: Final = bytes(char for char in range(128) if char not in STX + ETX)
     data_bits: Final = 7
     default_tcp_port: Final = 500
@@ -178,9 +179,36 @@ class FaconCodec(FatekCommands):
         """What a frame answers to this request."""
         return facon_data.parse_answer(request, frame.data)
 
-    def encode_answer(self, station: int, request: Request[A], answer: A) -> bytes:
+    def encode_answer(self, station: int, request: Request[A], answer: A, number: int = 0) -> bytes:
         """The frame in which a PLC gives this answer."""
+        del number
         return frame_bytes(station, request.command, facon_data.answer_data(request, answer))
+
+    def encode_raw(
+        self,
+        station: int,
+        command: int,
+        data: bytes,
+        number: int = 0,
+        *,
+        answer: bool = False,
+    ) -> bytes:
+        """A frame with any command and data; requests and answers have the same form."""
+        del number, answer
+        return frame_bytes(station, command, data)
+
+    def encode_refusal(self, station: int, command: int, code: int, number: int = 0) -> bytes:
+        """The frame in which a PLC refuses this command."""
+        del number
+        return frame_bytes(station, command, b"%X" % code)
+
+    def checksum(self, data: bytes) -> bytes:
+        """The LRC of everything from STX to the last data byte."""
+        return _PAIRS[sum(data) & 0xFF]
+
+    def error_text(self, code: int) -> str:
+        """An error code in words."""
+        return meaning_of(code)
 
     def request_bytes(self, request: Request[A]) -> int:
         """Length of the frame that asks this, in bytes."""

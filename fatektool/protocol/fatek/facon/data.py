@@ -181,6 +181,7 @@ _FIELDS: Final[dict[int, _Fields]] = {
         lambda _, answer: to_hex(answer.raw),
     ),
 }
+COMMANDS: Final = frozenset(Command(code) for code in _FIELDS)
 
 _ERROR_CHARACTER_MAY_LACK: Final = {Command.READ_PAGE, Command.DETAILED_STATUS}
 

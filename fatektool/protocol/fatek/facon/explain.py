@@ -19,6 +19,7 @@ from fatektool.protocol.fatek.facon.explain_data import answer_fields, request_f
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from fatektool.protocol.codec import Codec
     from fatektool.protocol.commands import Request
 
 _SAYS_LITTLE: Final = "data that no paper describes"
@@ -36,7 +37,8 @@ class FaconExplainer:
     form: ClassVar[str] = "bytes from STX (02) to ETX (03)"
     binary: ClassVar[bool] = False
 
-    def __init__(self) -> None:
+    def __init__(self, codec: Codec) -> None:
+        del codec
         self._last: dict[tuple[int, int], Request[Any]] = {}
 
     def explain(self, data: bytes, role: Role = Role.EITHER) -> Iterator[Explanation]:

@@ -9,7 +9,7 @@ from fatektool.protocol import explain_data
 from fatektool.protocol.commands import COMMAND_WORDS, PAGE_BYTES, Command
 from fatektool.protocol.explain_data import ACKNOWLEDGED, Cutter
 from fatektool.protocol.fatek.facon.text import CHARS, HEX_DIGITS, element_text, take_value, unhex
-from fatektool.protocol.plc_errors import MEANINGS
+from fatektool.protocol.plc_errors import meaning_of
 from fatektool.protocol.status import BriefStatus, DetailedStatus
 
 if TYPE_CHECKING:
@@ -66,8 +66,7 @@ def answer_fields(command: int, data: bytes, asked: Request[Any] | None) -> tupl
     if len(data) == 1 and data != b"0":
         if data not in HEX_DIGITS:
             raise FrameError("the error character is no hex digit", raw=data)
-        meaning = MEANINGS.get(int(data, 16), "a code that no paper lists")
-        cutter.cut(1, "error", f"REFUSED: {meaning}")
+        cutter.cut(1, "error", f"REFUSED: {meaning_of(int(data, 16))}")
         return tuple(cutter.fields)
     if command not in COMMAND_WORDS:
         raise FrameError(f"command {command:02X} is not in the paper", raw=data)

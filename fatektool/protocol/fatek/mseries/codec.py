@@ -30,6 +30,7 @@ from fatektool.protocol.codec import Frame, require_commands
 from fatektool.protocol.fatek.commands import FatekCommands
 from fatektool.protocol.fatek.mseries import data as mseries_data
 from fatektool.protocol.fatek.mseries.crc import crc_bytes
+from fatektool.protocol.fatek.mseries.errors import meaning_of
 
 if TYPE_CHECKING:
     from fatektool.protocol.commands import Command, Request
@@ -176,6 +177,7 @@ class MseriesCodec(FatekCommands):
 
     name: Final = "mseries"
     commands: Final[frozenset[Command]] = mseries_data.COMMANDS
+    last_error: Final = 0xFF
     loopback_alphabet: Final = bytes(range(256))
     data_bits: Final = 8
     default_tcp_port: Final = None
@@ -203,9 +205,36 @@ class MseriesCodec(FatekCommands):
             raise FrameError("a request (51), expected an answer (52)", raw=frame.raw)
         return mseries_data.parse_answer(request, frame.data)
 
-    def encode_answer(self, station: int, request: Request[A], answer: A) -> bytes:
+    def encode_answer(self, station: int, request: Request[A], answer: A, number: int = 0) -> bytes:
         """The frame in which a PLC gives this answer."""
+        del number
         return frame_bytes(RESPONSE, station, request.command, mseries_data.answer_data(request, answer))
+
+    def encode_raw(
+        self,
+        station: int,
+        command: int,
+        data: bytes,
+        number: int = 0,
+        *,
+        answer: bool = False,
+    ) -> bytes:
+        """A frame with any command and data."""
+        del number
+        return frame_bytes(RESPONSE if answer else QUERY, station, command, data)
+
+    def encode_refusal(self, station: int, command: int, code: int, number: int = 0) -> bytes:
+        """The frame in which a PLC refuses this command."""
+        del number
+        return frame_bytes(RESPONSE, station, command, bytes([code]))
+
+    def checksum(self, data: bytes) -> bytes:
+        """The CRC of length and payload."""
+        return crc_bytes(data)
+
+    def error_text(self, code: int) -> str:
+        """An error code in words."""
+        return meaning_of(code)
 
     def request_bytes(self, request: Request[A]) -> int:
         """Length of the frame that asks this, in bytes."""

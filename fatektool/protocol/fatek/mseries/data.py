@@ -47,7 +47,7 @@ from fatektool.protocol.fatek.mseries.bytes import (
     value_bytes,
     words_bytes,
 )
-from fatektool.protocol.fatek.mseries.errors import MEANINGS, NEXT, UNKNOWN
+from fatektool.protocol.fatek.mseries.errors import NEXT, meaning_of
 from fatektool.protocol.plc_errors import asked
 from fatektool.protocol.status import BriefStatus, DetailedStatus, RawStatus
 
@@ -281,8 +281,7 @@ def parse_answer(request: Request[A], data: bytes) -> A:
     if len(data) == 1 and data != _NO_ERROR and not one_byte_loopback:
         code = data[0]
         raise PlcRefused(
-            f"the PLC refused to {asked(request)} ({command:02X}): error {code:X}, "
-            f"{MEANINGS.get(code, UNKNOWN)}",
+            f"the PLC refused to {asked(request)} ({command:02X}): error {code:X}, {meaning_of(code)}",
             code=code,
             command=command,
             hint=NEXT.get(code),

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from typing import Final
 
-UNKNOWN: Final = "a code that the M-series paper does not list"
 MEANINGS: Final = {
     0x02: "illegal value",
     0x04: "illegal format, or a command that cannot be executed",
@@ -25,3 +24,8 @@ NEXT: Final = {
     0x0A: "this PLC has no such element",
 }
 """This project's advice: [E:error-advice]. There are no program commands, so nothing can be restored."""
+
+
+def meaning_of(code: int) -> str:
+    """What an error code means, in words."""
+    return MEANINGS.get(code, "a code that the M-series paper does not list")

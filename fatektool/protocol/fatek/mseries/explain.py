@@ -19,6 +19,7 @@ from fatektool.protocol.fatek.mseries.explain_data import answer_fields, request
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from fatektool.protocol.codec import Codec
     from fatektool.protocol.commands import Request
 
 _SAYS_LITTLE: Final = "data that no paper describes"
@@ -37,7 +38,8 @@ class MseriesExplainer:
     form: ClassVar[str] = "51 10 or 52 10, a length and as many bytes, a CRC, 55 AA"
     binary: ClassVar[bool] = True
 
-    def __init__(self) -> None:
+    def __init__(self, codec: Codec) -> None:
+        del codec
         self._last: dict[tuple[int, int], Request[Any]] = {}
 
     def explain(

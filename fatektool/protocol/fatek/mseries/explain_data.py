@@ -10,7 +10,7 @@ from fatektool.protocol.commands import DETAILED_BYTES, Command
 from fatektool.protocol.explain_data import ACKNOWLEDGED, Cutter
 from fatektool.protocol.fatek.mseries.bytes import VALUE_BYTES, element_size, take_value
 from fatektool.protocol.fatek.mseries.data import COMMANDS
-from fatektool.protocol.fatek.mseries.errors import MEANINGS, UNKNOWN
+from fatektool.protocol.fatek.mseries.errors import meaning_of
 from fatektool.protocol.status import BriefStatus, DetailedStatus
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ def answer_fields(command: int, data: bytes, asked: Request[Any] | None) -> tupl
         explain_data.loopback(cutter)
         return tuple(cutter.fields)
     if len(data) == 1 and data[0]:
-        cutter.cut(1, "error", f"REFUSED: {MEANINGS.get(data[0], UNKNOWN)}")
+        cutter.cut(1, "error", f"REFUSED: {meaning_of(data[0])}")
         return tuple(cutter.fields)
     if command not in COMMANDS:
         raise FrameError(f"command {command:02X} is not in the paper", raw=data)

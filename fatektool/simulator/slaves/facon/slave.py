@@ -30,14 +30,14 @@ and nothing is written unless all of it is right (FACON paper, sections 2 to 4).
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import lru_cache, partial
 from struct import pack
 from typing import TYPE_CHECKING
 
 from fatektool.simulator.memory import DiscreteAction
-from fatektool.simulator.models import PAGE_BYTES
+from fatektool.simulator.models import DEFAULT_MODEL, PAGE_BYTES
 from fatektool.simulator.refusal import Refusal, RefusalCode
-from fatektool.simulator.slaves.base import BROADCAST, Request, RequestKind, addressed
+from fatektool.simulator.slaves.base import BROADCAST, Request, RequestKind, SlaveType, addressed
 from fatektool.simulator.slaves.facon import frame as facon_frame
 from fatektool.simulator.slaves.facon.fields import VALUE_CHARACTERS, Fields, hex_value
 
@@ -263,3 +263,5 @@ _COMMANDS: dict[bytes, Callable[[SimulatedPlc, Fields], bytes]] = {
     b"49": _write_mixed,
     b"50": _write_page,
 }
+
+FACON = SlaveType(FaconSlave, DEFAULT_MODEL, 10, partial(FaconSlave, error_character=False))

@@ -27,14 +27,14 @@ from struct import pack
 from typing import TYPE_CHECKING
 
 from fatektool.simulator.refusal import Refusal, RefusalCode
-from fatektool.simulator.slaves.base import BROADCAST, Request, RequestKind, addressed
+from fatektool.simulator.slaves.base import BROADCAST, Request, RequestKind, SlaveType, addressed
 from fatektool.simulator.slaves.modbus.map import LONG_COUNTER, Piece, pieces
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from fatektool.simulator.plc import SimulatedPlc
-    from fatektool.simulator.slaves.modbus.frame import Framing
+    from fatektool.simulator.slaves.modbus.framing import Framing
 
 MAX_READ_BITS, MAX_READ_WORDS = 2000, 125
 MAX_WRITE_BITS, MAX_WRITE_WORDS = 1968, 123
@@ -203,3 +203,12 @@ _FUNCTIONS: dict[int, Callable[[SimulatedPlc, int, bytes], bytes]] = {
     15: _write_bits,
     16: _write_words,
 }
+
+
+def slave_type(make_framing: Callable[[], Framing], bits_per_char: float) -> SlaveType:
+    """A Modbus slave with a framing of its own for each line."""
+
+    def make(plcs: Mapping[int, SimulatedPlc]) -> ModbusSlave:
+        return ModbusSlave(plcs, make_framing())
+
+    return SlaveType(make, "fbs-20mc", bits_per_char)

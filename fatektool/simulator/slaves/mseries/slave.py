@@ -36,7 +36,7 @@ from typing import TYPE_CHECKING
 
 from fatektool.simulator.memory import DiscreteAction
 from fatektool.simulator.refusal import Refusal, RefusalCode
-from fatektool.simulator.slaves.base import BROADCAST, Request, RequestKind
+from fatektool.simulator.slaves.base import BROADCAST, Request, RequestKind, SlaveType
 from fatektool.simulator.slaves.mseries import frame as mseries_frame
 from fatektool.simulator.slaves.mseries.fields import Fields, value_bytes
 
@@ -232,3 +232,5 @@ _COMMANDS: dict[bytes, Callable[[SimulatedPlc, Fields], bytes]] = {
     b"\x49": _write_mixed,
     b"\x53": _detailed_status,
 }
+
+MSERIES = SlaveType(MSeriesSlave, "m-series", 11)

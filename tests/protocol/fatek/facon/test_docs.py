@@ -12,9 +12,9 @@ from fatektool.protocol.commands import COMMAND_WORDS, Command
 from fatektool.protocol.elements import KINDS, Element
 from fatektool.protocol.explain import Explanation, Role
 from fatektool.protocol.fatek.facon.codec import FACON
-from fatektool.protocol.fatek.facon.explain import FaconExplainer
 from fatektool.protocol.fatek.facon.text import element_text
 from fatektool.protocol.plc_errors import MEANINGS
+from fatektool.protocol.registry import new_explainer
 from fatektool.protocol.status import MODELS, POINTS_FB, POINTS_FBS
 from tests.protocol.decoding import decoded, one_frame
 from tests.protocol.vectors import EXAMPLES, MISPRINTS, NAMES
@@ -78,7 +78,7 @@ BLOCKS = blocks(DOC, "facon")
 
 @pytest.mark.parametrize(("heading", "frames"), BLOCKS, ids=[f"{n} {b[0]}" for n, b in enumerate(BLOCKS)])
 def test_examples(heading: str, frames: list[Shown]) -> None:
-    explainer = FaconExplainer()
+    explainer = new_explainer("facon")
     command = re.match(r"[0-9A-F]{2}(?= )", heading)
     for shown in frames:
         if shown.kind == "wrong":

@@ -12,8 +12,8 @@ from fatektool.protocol.explain import Role
 from fatektool.protocol.fatek.mseries.bytes import element_bytes
 from fatektool.protocol.fatek.mseries.codec import MAX_PAYLOAD, MSERIES
 from fatektool.protocol.fatek.mseries.crc import crc16
-from fatektool.protocol.fatek.mseries.explain import MseriesExplainer
 from fatektool.protocol.plc_errors import MEANINGS
+from fatektool.protocol.registry import new_explainer
 from tests.protocol.decoding import one_frame
 from tests.protocol.fatek.facon.test_docs import Shown, blocks, table, words
 from tests.protocol.fatek.mseries.vectors import EXAMPLES, PAYLOADS
@@ -29,7 +29,7 @@ BEFORE = 5  # header, ID, length, station, command
 
 @pytest.mark.parametrize(("heading", "frames"), BLOCKS, ids=[f"{n} {b[0]}" for n, b in enumerate(BLOCKS)])
 def test_examples(heading: str, frames: list[Shown]) -> None:
-    explainer = MseriesExplainer()
+    explainer = new_explainer("mseries")
     command = re.match(r"[0-9A-F]{2}(?= )", heading)
     for shown in frames:
         (explanation,) = explainer.explain(shown.raw)

@@ -11,9 +11,8 @@ from hypothesis import strategies as st
 from fatektool.protocol.commands import Command, ReadDetailedStatus, ReadRegisters
 from fatektool.protocol.elements import Element
 from fatektool.protocol.explain import Explanation, Role
-from fatektool.protocol.explainers import EXPLAINERS
 from fatektool.protocol.fatek.mseries.codec import MSERIES
-from fatektool.protocol.fatek.mseries.explain import MseriesExplainer
+from fatektool.protocol.registry import new_explainer
 from fatektool.protocol.status import RawStatus
 from tests.protocol.decoding import query, response, sealed
 from tests.protocol.fatek.mseries.vectors import EXAMPLES, FRAMES, PAYLOADS
@@ -27,7 +26,7 @@ R12 = ReadRegisters(Element("R", 12), 3)
 
 def explained(*pieces: bytes) -> list[Explanation]:
     """A conversation explained; what must hold for any is asserted on the way."""
-    explainer = MseriesExplainer()
+    explainer = new_explainer("mseries")
     found = []
     for data in pieces:
         here = list(explainer.explain(data, Role.EITHER))
@@ -49,10 +48,6 @@ def data_fields(explanation: Explanation) -> list[tuple[str, str, str]]:
     assert names[:5] == ["header", "ID", "length", "station", "command"]
     assert names[-2:] == ["CRC", "terminator"]
     return [(field.name, field.raw.hex().upper(), field.meaning) for field in explanation.fields[5:-2]]
-
-
-def test_it_is_the_one_that_the_protocol_names() -> None:
-    assert EXPLAINERS["mseries"] is MseriesExplainer
 
 
 @pytest.mark.parametrize("example", ALL, ids=BY_NAME)

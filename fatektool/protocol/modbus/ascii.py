@@ -1,0 +1,100 @@
+"""Modbus ASCII.
+
+::
+
+    : · station and PDU in hex digits · LRC(2 hex digits) · CR LF
+
+As STX in FACON, ``:`` never stands inside a frame, so a second one begins a new frame.
+"""
+
+from __future__ import annotations
+
+from binascii import unhexlify
+from typing import Final
+
+from fatektool.errors import FrameError
+from fatektool.protocol.codec import Frame
+from fatektool.protocol.modbus.codec import ModbusCodec
+from fatektool.protocol.modbus.decoding import Buffer
+from fatektool.protocol.modbus.framing import MAX_PDU, FramePart, Framing, always
+from fatektool.protocol.modbus.pdu import EXCEPTION, lrc_byte
+
+MAX_ASCII: Final = 7 + 2 * MAX_PDU
+MIN_ASCII: Final = 11
+_HEX_DIGITS: Final = b"0123456789ABCDEF"
+
+
+def _encode(station: int, pdu: bytes, number: int = 0) -> bytes:
+    del number
+    body = bytes([station]) + pdu
+    return b":" + (body + bytes([lrc_byte(body)])).hex().upper().encode() + b"\r\n"
+
+
+def _checksum(data: bytes) -> bytes:
+    return b"%02X" % lrc_byte(data)
+
+
+class AsciiDecoder(Buffer):
+    """Cuts ASCII frames out of a stream."""
+
+    def expect_no_more(self) -> bool:
+        """False: behind a frame that has not ended nothing can stand, as ``:`` would have begun another."""
+        return False
+
+    def next_frame(self) -> Frame | None:
+        """Give the next frame, or None when more bytes are needed.
+
+        Raises:
+            FrameError: bad bytes, dropped.
+        """
+        buffer = self._buffer
+        if not buffer:
+            return None
+        start = buffer.find(b":")
+        if start:
+            raise FrameError("noise outside a frame", raw=self._take(start if start > 0 else len(buffer)))
+        end = buffer.find(b"\r\n", 1)
+        again = buffer.find(b":", 1, end if end > 0 else len(buffer))
+        if again > 0:
+            raise FrameError("a frame broke off and another began", raw=self._take(again))
+        if end < 0:
+            if len(buffer) > MAX_ASCII:
+                raise FrameError(f"no end within {MAX_ASCII} bytes", raw=self._take(len(buffer)))
+            return None
+        return parse_ascii(self._take(end + 2))
+
+
+def parse_ascii(raw: bytes) -> Frame:
+    """Read one ASCII frame from ``:`` to CR LF.
+
+    Raises:
+        FrameError: a wrong checksum (then ``checksum`` is True), or no frame.
+    """
+    digits = raw[1:-2]
+    if not MIN_ASCII <= len(raw) <= MAX_ASCII or len(digits) % 2 or digits.translate(None, _HEX_DIGITS):
+        raise FrameError(
+            f"no frame: expected {MIN_ASCII} to {MAX_ASCII} bytes of capital hex digits in pairs, "
+            f"got {len(raw)} bytes",
+            raw=raw,
+        )
+    content = unhexlify(digits)
+    expected = lrc_byte(content[:-1])
+    if content[-1] != expected:
+        raise FrameError(f"checksum: expected {expected:02X}, got {content[-1]:02X}", raw=raw, checksum=True)
+    return Frame(content[0], content[1] & ~EXCEPTION, content[1:-1], raw)
+
+
+ASCII: Final = ModbusCodec(
+    Framing(
+        "modbus-ascii",
+        "a colon, hex digits, an LRC, CR LF",
+        _encode,
+        AsciiDecoder,
+        lambda size: 2 * size + 7,
+        before=(FramePart("start", 1, always("begins a frame")),),
+        behind=(FramePart("LRC", 2, always("right")), FramePart("end", 2, always("CR LF"))),
+        checksum=_checksum,
+        octet=2,
+        data_bits=7,
+    )
+)
