@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from fatektool.cli.many.fleet.jobs import Done
+    from fatektool.cli.many.outcome import Outcome
     from fatektool.cli.shared.output import Voice
 
 F = TypeVar("F", bound="Callable[..., Any]")
@@ -29,31 +29,7 @@ F = TypeVar("F", bound="Callable[..., Any]")
 _MAX_FILE: Final = 64 << 20
 _MODE: Final = 0o644  # the collector is another user
 _MOST_HANGS: Final = 3
-
-
-@dataclass(frozen=True, slots=True)
-class Told:
-    """What became of one PLC, for those who are told.
-
-    Attributes:
-        name: the PLC's.
-        target: where it is.
-        station: 1 to 254.
-        exit_code: of its job.
-        words: the same on one line.
-        duration_s: how long it took.
-        up: whether it answered; None if it was not asked.
-        done: what its job gave; None if it failed.
-    """
-
-    name: str
-    target: str
-    station: int
-    exit_code: int
-    words: str
-    duration_s: float
-    up: bool | None
-    done: Done | None
+_FLAGS: Final = ("running", "battery_low", "ladder_checksum_error", "watchdog_timeout", "emergency_stop")
 
 
 @dataclass(slots=True)
@@ -71,17 +47,17 @@ class Alarms:
     on_change: tuple[str, ...] | None
     on_failure: tuple[str, ...] | None
     lost: FatektoolError | None = field(init=False, default=None)
-    _told: list[tuple[str, Told]] = field(init=False, default_factory=list)
+    _outcomes: list[tuple[str, Outcome]] = field(init=False, default_factory=list)
     _hangs: int = field(init=False, default=0)
 
-    def tell(self, job: str, told: Told, voice: Voice) -> None:
-        """One PLC has ended: start the commands that it calls for."""
+    def notify(self, job: str, outcome: Outcome, voice: Voice) -> None:
+        """One PLC has ended: start the commands that are for such an outcome."""
         if self.prometheus is not None:
-            self._told.append((job, told))
-        if self.on_change is not None and told.done is not None and told.done.changed:
-            self._run(self.on_change, "change", job, told, voice)
-        if self.on_failure is not None and told.exit_code:
-            self._run(self.on_failure, "failure", job, told, voice)
+            self._outcomes.append((job, outcome))
+        if self.on_change is not None and outcome.result.changed:
+            self._run(self.on_change, "change", job, outcome, voice)
+        if self.on_failure is not None and outcome.result.exit_code:
+            self._run(self.on_failure, "failure", job, outcome, voice)
 
     def write(self, known: set[str], voice: Voice) -> None:
         """Write the Prometheus file, whole or not at all; ``lost`` is why, if it cannot be.
@@ -103,7 +79,7 @@ class Alarms:
         if prometheus.is_file():
             text = read_bounded(prometheus, _MAX_FILE).decode(errors="replace")
             former = {key: when for key, when in successes(text).items() if key[0] in known}
-        text = exposition(_samples(self._told, former, time.time()))
+        text = exposition(_samples(self._outcomes, former, time.time()))
         write_whole(prometheus, text.encode(errors="backslashreplace"), overwrite=True, mode=_MODE)
         for name, series in doubled(text, _beside(prometheus)).items():
             voice.warn(
@@ -111,18 +87,26 @@ class Alarms:
                 f"remove {name} if nothing writes it any more, or let one command write both"
             )
 
-    def _run(self, command: tuple[str, ...], event: str, job: str, told: Told, voice: Voice) -> None:
+    def _run(self, command: tuple[str, ...], event: str, job: str, outcome: Outcome, voice: Voice) -> None:
         if self._hangs >= _MOST_HANGS:
-            voice.warn(f"{told.name}: {command[0]} is not started, as it hung {_MOST_HANGS} times before")
+            voice.warn(f"{outcome.name}: {command[0]} is not started, as it hung {_MOST_HANGS} times before")
             return
-        file = "" if told.done is None or told.done.file is None else str(told.done.file)
+        result = outcome.result
         happened = Event(
-            told.name, told.target, told.station, job, event, told.exit_code, told.words, file, utc()
+            outcome.name,
+            outcome.target,
+            outcome.station,
+            job,
+            event,
+            result.exit_code,
+            result.words,
+            "" if result.file is None else str(result.file),
+            utc(),
         )
         began = time.monotonic()
         fault = run_command(command, happened)
         if fault is not None:
-            voice.warn(f"--on-{event} for {told.name}: {fault}")
+            voice.warn(f"--on-{event} for {outcome.name}: {fault}")
         self._hangs += time.monotonic() - began >= TIME_LIMIT_S
 
 
@@ -138,31 +122,25 @@ def _beside(prometheus: Path) -> dict[str, str]:
 
 
 def _samples(
-    told: list[tuple[str, Told]], former: dict[tuple[str, str], float], now: float
+    outcomes: list[tuple[str, Outcome]], former: dict[tuple[str, str], float], now: float
 ) -> Iterator[Sample]:
-    for job, each in told:
+    for job, each in outcomes:
+        result = each.result
         of_job = {"plc": each.name, "job": job}
         place = of_job | {"target": each.target, "station": each.station}
         yield sample("fatek_plc_info", 1, place)
-        if each.up is not None:
-            yield sample("fatek_up", each.up, of_job)
-        yield sample("fatek_exit_code", each.exit_code, of_job)
+        if result.up is not None:
+            yield sample("fatek_up", result.up, of_job)
+        yield sample("fatek_exit_code", result.exit_code, of_job)
         yield sample("fatek_last_run_timestamp_seconds", int(now), of_job)
         yield sample("fatek_duration_seconds", round(each.duration_s, 3), of_job)
-        if each.exit_code == 0:
+        if result.exit_code == 0:
             former[each.name, job] = int(now)
-        done = each.done
-        if done is not None and done.changed is not None:
-            yield sample("fatek_program_changed", done.changed, of_job)
-        if done is not None and done.flags is not None:
-            for flag in (
-                "running",
-                "battery_low",
-                "ladder_checksum_error",
-                "watchdog_timeout",
-                "emergency_stop",
-            ):
-                yield sample(f"fatek_{flag}", getattr(done.flags, flag), of_job)
+        if result.changed is not None:
+            yield sample("fatek_program_changed", result.changed, of_job)
+        if result.flags is not None:
+            for flag in _FLAGS:
+                yield sample(f"fatek_{flag}", getattr(result.flags, flag), of_job)
     for (name, job), when in sorted(former.items()):
         yield sample("fatek_last_success_timestamp_seconds", when, {"plc": name, "job": job})
 

@@ -3,46 +3,27 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
-from datetime import UTC, datetime
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
-from fatektool.cli.many.alarms import Alarms, Told, alarm_options
-from fatektool.cli.many.fleet.jobs import Done
-from fatektool.cli.many.plugin import PluginCommand, check_document, plugin_line
+from fatektool.cli.many.alarms import Alarms, alarm_options
+from fatektool.cli.many.outcome import Outcome
+from fatektool.cli.many.plugin import PluginCommand, plugin_line
+from fatektool.cli.many.run_check import check_result, found_document, run_check
 from fatektool.cli.shared.options import PATH, Connection, Seconds, connection_options
 from fatektool.cli.shared.pairs import apart, together
-from fatektool.cli.shared.unfinished import unfinished_document
-from fatektool.errors import FatektoolError, UsageError
+from fatektool.errors import UsageError
 from fatektool.inventory.values import EXPECTATIONS
-from fatektool.jobs.fleet.check import Checked, State, check_backup, check_plc, parse_age
-from fatektool.jobs.progress import Progress, no_progress
+from fatektool.jobs.check.age import parse_age
+from fatektool.jobs.check.plc import CheckPlan
+from fatektool.jobs.check.result import State
 from fatektool.transport.limit import Limit
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from fatektool.cli.shared.output import Voice
-    from fatektool.transport.shared_line import SharedLine
-
-
-@dataclass(frozen=True, slots=True)
-class Plan:
-    """What is looked at beside the PLC's status.
-
-    Attributes:
-        expect: ``run``, ``stop`` or ``any``.
-        reference: the backup whose program ought to be in it; None for none.
-        backup: the last backup; None for none.
-        max_age_s: how old that may be; None for any age.
-    """
-
-    expect: str
-    reference: Path | None
-    backup: Path | None
-    max_age_s: float | None
 
 
 @click.command(
@@ -98,7 +79,7 @@ def check_command(
     entry = connection.entry
     if entry is not None and reference is None:
         reference = entry.reference
-    plan = Plan(
+    plan = CheckPlan(
         expect or ("run" if entry is None else entry.expect),
         None if no_reference else reference,
         backup,
@@ -107,72 +88,14 @@ def check_command(
     together("on_change", holds=plan.reference is not None, needs="a reference, with which to compare")
     name = connection.target if entry is None else entry.name
     began = time.monotonic()
-    found = Checked()
-    done = check_one(connection, name, plan, voice, found, limit=Limit(deadline))
-    told = Told(
-        name,
-        connection.target,
-        connection.station,
-        done.exit_code,
-        done.words,
-        time.monotonic() - began,
-        done.up,
-        done,
-    )
-    alarms.tell("check", told, voice)
+    found = run_check(connection, plan, voice, limit=Limit(deadline))
+    result = check_result(connection, name, plan, found)
+    outcome = Outcome(name, connection.target, connection.station, time.monotonic() - began, result)
+    alarms.notify("check", outcome, voice)
     alarms.write({name}, voice)
     if alarms.lost is not None:
         found.add(State.UNKNOWN, f"figures NOT WRITTEN: {alarms.lost.message}")
-        done = _done(connection, name, plan, found)
-    voice.show(done.document, [done.line])
-    return done.exit_code
-
-
-@dataclass(frozen=True, slots=True)
-class CheckDone(Done):
-    """What a check found, with its line as a plugin prints it."""
-
-    line: str = ""
-
-
-def check_one(
-    connection: Connection,
-    name: str,
-    plan: Plan,
-    voice: Voice,
-    found: Checked,
-    *,
-    limit: Limit,
-    shared: SharedLine | None = None,
-    progress: Progress = no_progress,
-) -> CheckDone:
-    """Look at one PLC, and at its backup whether it answers or not; ``found`` takes the facts."""
-    try:
-        with connection.open(voice, limit=limit, shared=shared) as plc:
-            check_plc(plc, found, expect=plan.expect, reference=plan.reference, progress=progress)
-    except FatektoolError as error:
-        found.fail(error)
-    unfinished = unfinished_document(connection.target, connection.station)
-    if unfinished is not None and found.differs is not False:  # the reference's program is whole
-        found.add(State.CRITICAL, f"restore UNFINISHED since {unfinished['time']}: it must not RUN")
-    if plan.backup is not None:
-        check_backup(plan.backup, found, max_age_s=plan.max_age_s, now=datetime.now(UTC))
-    return _done(connection, name, plan, found)
-
-
-def _done(connection: Connection, name: str, plan: Plan, found: Checked) -> CheckDone:
-    place: dict[str, Any] = {
-        "target": connection.target,
-        "station": connection.station,
-        "protocol": connection.protocol,
-    }
-    return CheckDone(
-        int(found.state),
-        check_document(found.state, found.words, found, name=name, **place),
-        found.words,
-        plan.reference,
-        found.differs,
-        found.flags,
-        found.flags is not None,
-        line=plugin_line(found.state, f"{name}: {found.words.removeprefix(f'{name}: ')}", found.figures),
-    )
+    words = f"{name}: {found.words.removeprefix(f'{name}: ')}"
+    document = found_document(connection, name, found)
+    voice.show(document, [plugin_line(found.state, words, found.figures)])
+    return int(found.state)

@@ -12,15 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from fatektool.cli.many.documents import check_document
 from fatektool.cli.shared.output import print_json
 from fatektool.errors import FatektoolError
-from fatektool.files.times import utc
-from fatektool.jobs.fleet.check import State
+from fatektool.jobs.check.result import State
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-
-    from fatektool.jobs.fleet.check import Checked
 
 
 class PluginCommand(click.Command):
@@ -71,31 +69,3 @@ def unknown(words: str, *, as_json: bool) -> int:
         else:
             click.echo(plugin_line(State.UNKNOWN, words, {}))
     return int(State.UNKNOWN)
-
-
-def check_document(
-    state: State,
-    words: str,
-    found: Checked | None,
-    *,
-    name: str | None = None,
-    target: str | None = None,
-    station: int | None = None,
-    protocol: str | None = None,
-) -> dict[str, Any]:
-    """``fatektool.check/1``; found and place are None where a check did not come to be."""
-    return {
-        "schema": "fatektool.check/1",
-        "time": utc(),
-        "name": name,
-        "target": target,
-        "station": station,
-        "protocol": protocol,
-        "state": state.name,
-        "exit_code": int(state),
-        "words": " ".join(words.split()),
-        "facts": []
-        if found is None
-        else [{"state": fact.state.name, "words": fact.words} for fact in found.facts],
-        "figures": {} if found is None else found.figures,
-    }

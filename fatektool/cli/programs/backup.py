@@ -17,7 +17,7 @@ from fatektool.cli.shared.streams import print_bytes
 from fatektool.errors import FatektoolError
 from fatektool.files.atomic import require_place, write_whole
 from fatektool.files.times import stamp, utc
-from fatektool.jobs.programs.backup import backup
+from fatektool.jobs.programs.backup import read_backup
 from fatektool.program.archive import Backup, save_backup
 from fatektool.protocol.commands import Command
 
@@ -51,11 +51,9 @@ def backup_command(
         if place is not None and not is_standard(place):
             require_place(place, overwrite=force)
     with connection.open(voice, needs=(Command.READ_PAGE,)) as plc, voice.progress() as bar:
-        clock = plc.link.transport.clock
-        began = clock()
-        found = backup(plc, single_pass=single_pass, any_header=any_header, progress=bar.update)
-        duration_s = clock() - began
+        result = read_backup(plc, single_pass=single_pass, any_header=any_header, progress=bar.update)
         counters = plc.link.counters
+    found = result.backup
     voice.detail(f"line: {counters}")
     warn_of_image(found.program, voice)
     if not is_standard(path):
@@ -73,7 +71,7 @@ def backup_command(
         ("passes", f"{found.passes}, equal" if found.passes > 1 else "1, not compared"),
         ("sha256", program.sha256),
     ]
-    voice.show(saved_document(found, path, duration_s), table(rows))
+    voice.show(saved_document(result, path), table(rows))
 
 
 def _write_raw(raw: Path, found: Backup, path: Path, *, overwrite: bool) -> None:

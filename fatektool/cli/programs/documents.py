@@ -12,7 +12,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fatektool.client import Plc
+    from fatektool.jobs.programs.backup import BackupResult
     from fatektool.jobs.programs.restore import RestoreResult
+    from fatektool.jobs.programs.verify import VerifyResult
     from fatektool.ladder.cross_reference import CrossReference, Finding
     from fatektool.ladder.differences import NetworkChange
     from fatektool.ladder.instruction import Instruction
@@ -48,13 +50,13 @@ def backup_summary(backup: Backup) -> dict[str, Any]:
     }
 
 
-def saved_document(backup: Backup, file: Path, duration_s: float) -> dict[str, Any]:
-    """``fatektool.backup-result/1``: what ``backup`` wrote."""
+def saved_document(found: BackupResult, file: Path) -> dict[str, Any]:
+    """``fatektool.backup-result/1``: what was written to a file."""
     return {
         "schema": "fatektool.backup-result/1",
         "file": str(file),
-        "duration_s": round(duration_s, 3),
-        **backup_summary(backup),
+        "duration_s": round(found.duration_s, 3),
+        **backup_summary(found.backup),
     }
 
 
@@ -165,22 +167,16 @@ def differences(comparison: Comparison) -> dict[str, Any]:
 
 
 def verify_document(
-    plc: Plc,
-    file: Path,
-    sha256: str,
-    found: ProgramComparison,
-    duration_s: float,
-    *,
-    comments: Mapping[str, str] | None = None,
+    plc: Plc, result: VerifyResult, comments: Mapping[str, str] | None = None
 ) -> dict[str, Any]:
-    """``fatektool.verify/1``: a file's program against the PLC's."""
+    """``fatektool.verify/1``: a file's program against the PLC's; ``comments`` are of elements."""
     return {
         "schema": "fatektool.verify/1",
         **where(plc),
-        "file": str(file),
-        "sha256": sha256,
-        "duration_s": round(duration_s, 3),
-        **program_differences(found, comments),
+        "file": result.file.name,
+        "sha256": result.file.sha256,
+        "duration_s": round(result.duration_s, 3),
+        **program_differences(result.found, comments),
     }
 
 

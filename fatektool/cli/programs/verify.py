@@ -12,7 +12,7 @@ from fatektool.cli.programs.program_files import comments_for, comments_options,
 from fatektool.cli.shared.options import PATH, Connection, connection_options
 from fatektool.cli.shared.report import report_option, write_report
 from fatektool.cli.shared.unfinished import forget, warn_of_unfinished
-from fatektool.jobs.programs.verify import verify_file
+from fatektool.jobs.programs.verify import compare_with_plc
 from fatektool.protocol.commands import Command
 
 if TYPE_CHECKING:
@@ -44,10 +44,9 @@ def verify_command(
     if comments is not None or not texts:
         texts = comments_for(connection, comments, voice, encoding)
     with connection.open(voice, needs=(Command.READ_PAGE,), finishes=True) as plc, voice.progress() as bar:
-        clock = plc.link.transport.clock
-        began = clock()
-        found = verify_file(plc, on_file, progress=bar.update)
-        document = verify_document(plc, file, on_file.sha256, found, clock() - began, comments=texts)
+        result = compare_with_plc(plc, on_file, progress=bar.update)
+        document = verify_document(plc, result, texts)
+    found = result.found
     if found.same:
         forget(connection.target, connection.station, voice)
     else:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fatektool.files.times import utc
@@ -12,6 +13,33 @@ from fatektool.version import __version__
 
 if TYPE_CHECKING:
     from fatektool.client import Plc
+
+
+@dataclass(frozen=True, slots=True)
+class BackupResult:
+    """A backup that was read, not yet written to a file.
+
+    Attributes:
+        backup: the program with its source.
+        duration_s: how long the reading took.
+    """
+
+    backup: Backup
+    duration_s: float
+
+
+def read_backup(
+    plc: Plc,
+    *,
+    single_pass: bool = False,
+    any_header: bool = False,
+    progress: Progress = no_progress,
+) -> BackupResult:
+    """``backup``, with the time that it took; arguments and errors are the same."""
+    clock = plc.link.transport.clock
+    began = clock()
+    found = backup(plc, single_pass=single_pass, any_header=any_header, progress=progress)
+    return BackupResult(found, clock() - began)
 
 
 def backup(

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import DataError, UsageError
-from fatektool.program.archive import load_backup
+from fatektool.program.archive import load_backup, save_backup
 from fatektool.program.headers.header import PAGE_BYTES
 
 if TYPE_CHECKING:
@@ -54,6 +55,39 @@ def former_hash(path: Path) -> str | None:
                 f"{path} is no backup, and is kept", hint="name another folder", file=str(path)
             ) from error
         raise
+
+
+@dataclass(frozen=True, slots=True)
+class Replaced:
+    """A backup that took the place of the one before.
+
+    Attributes:
+        changed: True if the program is another than before; None where there was none before.
+        damaged: why the one before could not be read; None if it could, or was not there.
+    """
+
+    changed: bool | None
+    damaged: str | None = None
+
+
+def replace_backup(backup: Backup, path: Path) -> Replaced:
+    """Write a backup in place of the one before. One that is damaged is replaced too.
+
+    Args:
+        backup: the new one.
+        path: the file, which need not be there.
+
+    Raises:
+        UsageError: the file is no backup at all, and is kept; or it cannot be written.
+        DataError: the disk is full or broken.
+    """
+    try:
+        before = former_hash(path)
+    except DataError as error:  # to replace it by a good one is what helps
+        save_backup(backup, path, overwrite=True)
+        return Replaced(None, error.message)
+    save_backup(backup, path, overwrite=True)
+    return Replaced(None if before is None else before != backup.program.sha256)
 
 
 def age_s(backup: Backup, now: datetime) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fatektool.jobs.programs.reading import gives_page, read_all_pages
@@ -59,6 +60,29 @@ def verify_file(plc: Plc, file: ProgramFile, *, progress: Progress = no_progress
     if other is None:
         return ProgramComparison(file.program, None, pages, None, None)
     return compared(file.program, other, pages, file.code, file.code if pages.same else code_of(other))
+
+
+@dataclass(frozen=True, slots=True)
+class VerifyResult:
+    """The program in a file against the one in the PLC.
+
+    Attributes:
+        file: what is on file.
+        found: the comparison; ``a`` is the file.
+        duration_s: how long reading and comparing took.
+    """
+
+    file: ProgramFile
+    found: ProgramComparison
+    duration_s: float
+
+
+def compare_with_plc(plc: Plc, file: ProgramFile, *, progress: Progress = no_progress) -> VerifyResult:
+    """``verify_file``, with the time that it took; arguments and errors are the same."""
+    clock = plc.link.transport.clock
+    began = clock()
+    found = verify_file(plc, file, progress=progress)
+    return VerifyResult(file, found, clock() - began)
 
 
 def _verify_project(plc: Plc, file: ProgramFile, progress: Progress) -> ProgramComparison:

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from fatektool.cli.many.alarms import Alarms
-from fatektool.cli.many.fleet.jobs import Done
 from fatektool.cli.many.fleet.run import Orders, run_fleet
+from fatektool.cli.many.outcome import Result
 from fatektool.cli.shared.output import Voice
 from fatektool.errors import LineError
 from fatektool.inventory.entries import Inventory, PlcEntry
@@ -19,7 +19,7 @@ from fatektool.inventory.entries import Inventory, PlcEntry
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from fatektool.cli.many.alarms import Told
+    from fatektool.cli.many.outcome import Outcome
     from fatektool.jobs.fleet.rounds import Turn
 
 PLCS = 5
@@ -51,8 +51,8 @@ class Slow(Alarms):
         super().__init__(prometheus, None, None)
         self.told = threading.Semaphore(1)
 
-    def tell(self, job: str, told: Told, voice: Voice) -> None:
-        super().tell(job, told, voice)
+    def notify(self, job: str, outcome: Outcome, voice: Voice) -> None:
+        super().notify(job, outcome, voice)
         self.told.release()
 
 
@@ -65,13 +65,13 @@ def run(folder: Path, watch: Watch, *, fails: bool, json: bool) -> dict[str, Any
     orders = Orders(Inventory(folder / "fatek.toml", entries), list(entries.values()), 1, 60.0)
     alarms = Slow(folder / "fleet.prom")
 
-    def work(entry: PlcEntry, turn: Turn[Done]) -> Done:
+    def work(entry: PlcEntry, turn: Turn[Result]) -> Result:
         alarms.told.acquire()
         read_so_far = watch.large()
         turn.progress("reading", len(read_so_far), 0)
         if fails:
             raise LineError(f"{entry.name}: no answer")
-        return Done(0, read_so_far, "same", changed=False)
+        return Result(0, read_so_far, "same", changed=False)
 
     document, interrupted = run_fleet("verify", orders, alarms, Voice(json=json, quiet=True), work)
     assert not interrupted

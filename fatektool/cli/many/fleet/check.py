@@ -11,19 +11,21 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fatektool.cli.many.alarms import Alarms, alarm_options
-from fatektool.cli.many.check import Plan, check_one
 from fatektool.cli.many.fleet.run import Orders, fleet_options, run_fleet
 from fatektool.cli.many.plugin import PluginCommand, plugin_line
+from fatektool.cli.many.run_check import check_result, run_check
 from fatektool.cli.shared.options import PATH, connection_of
 from fatektool.cli.shared.pairs import apart
 from fatektool.errors import UsageError
-from fatektool.jobs.fleet.check import Checked, State, parse_age, worst
+from fatektool.jobs.check.age import parse_age
+from fatektool.jobs.check.plc import CheckPlan
+from fatektool.jobs.check.result import State, worst
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from fatektool.cli.many.fleet.jobs import Done
+    from fatektool.cli.many.outcome import Result
     from fatektool.cli.shared.output import Voice
     from fatektool.inventory.entries import PlcEntry
     from fatektool.jobs.fleet.rounds import Turn
@@ -59,8 +61,8 @@ def check_command(
     apart("on_change", "no_reference")
     age_s = None if max_age is None else parse_age(max_age)
 
-    def work(entry: PlcEntry, turn: Turn[Done]) -> Done:
-        plan = Plan(
+    def work(entry: PlcEntry, turn: Turn[Result]) -> Result:
+        plan = CheckPlan(
             entry.expect,
             None if no_reference else entry.reference,
             None if backups is None else backups / f"{entry.name}.json",
@@ -69,16 +71,16 @@ def check_command(
         limit = turn.limit
         if limit is None:  # it has begun: for the type checker
             raise AssertionError
-        return check_one(
-            connection_of(entry),
-            entry.name,
+        connection = connection_of(entry)
+        found = run_check(
+            connection,
             plan,
             voice.of(entry.name),
-            Checked(),
             limit=limit,
             shared=turn.shared,
             progress=turn.progress,
         )
+        return check_result(connection, entry.name, plan, found)
 
     document, interrupted = run_fleet("check", orders, alarms, voice, work, lines=False)
     states = {plc["name"]: _state(plc) for plc in document["plcs"]}

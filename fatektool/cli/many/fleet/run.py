@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from fatektool.cli import INTERRUPTED, Interrupted
-from fatektool.cli.many.alarms import Told
+from fatektool.cli import Interrupted
+from fatektool.cli.many.documents import FleetRun, fleet_document
 from fatektool.cli.many.fleet.view import View
-from fatektool.cli.shared.documents import error_document
+from fatektool.cli.many.outcome import Outcome, Result, failure
 from fatektool.cli.shared.inventory_file import complete_names, inventory_option, open_inventory
 from fatektool.cli.shared.options import Seconds, voice_options
-from fatektool.errors import LineError, PlcError, PortBusy
+from fatektool.errors import FatektoolError
 from fatektool.files.times import utc
 from fatektool.inventory.select import select
 from fatektool.jobs.fleet.lines import addresses_of, line_of
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fatektool.cli.many.alarms import Alarms
-    from fatektool.cli.many.fleet.jobs import Done
     from fatektool.cli.shared.output import Voice
     from fatektool.inventory.entries import Inventory, PlcEntry
     from fatektool.jobs.fleet.rounds import Turn
@@ -35,7 +34,6 @@ F = TypeVar("F", bound="Callable[..., Any]")
 
 _LOOK_S = 0.2
 _NEWS = "fatektool.news"
-_SLOWEST = 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,29 +51,6 @@ class Orders:
     entries: list[PlcEntry]
     jobs: int
     deadline_s: float
-
-
-@dataclass(frozen=True, slots=True)
-class Outcome:
-    """What became of one PLC.
-
-    Attributes:
-        entry: the PLC.
-        exit_code: of its job; 130 if it was interrupted, or not begun.
-        document: of its job; dropped where nobody will see it.
-        words: the same on one line.
-        duration_s: how long it took.
-        changed: True if the program is another than before; None where nobody can tell.
-        file: what was written, or compared with; None if there is none.
-    """
-
-    entry: PlcEntry
-    exit_code: int
-    document: dict[str, Any] | None
-    words: str
-    duration_s: float
-    changed: bool | None = None
-    file: Path | None = None
 
 
 def _complete_selection(context: click.Context, _: click.Parameter, incomplete: str) -> list[Any]:
@@ -146,7 +121,7 @@ def run_fleet(
     orders: Orders,
     alarms: Alarms,
     voice: Voice,
-    work: Callable[[PlcEntry, Turn[Done]], Done],
+    work: Callable[[PlcEntry, Turn[Result]], Result],
     *,
     lines: bool = True,
 ) -> tuple[dict[str, Any], bool]:
@@ -173,22 +148,15 @@ def run_fleet(
     outcomes: dict[str, Outcome] = {}
     interrupted = False
 
-    def report(turn: Turn[Done]) -> None:
-        entry, done = entries[turn.task.name], turn.result
-        told = _told(entry, turn)
-        outcomes[entry.name] = Outcome(
-            entry,
-            told.exit_code,
-            _document(turn) if voice.json else None,
-            told.words,
-            told.duration_s,
-            None if done is None else done.changed,
-            None if done is None else done.file,
-        )
+    def report(turn: Turn[Result]) -> None:
+        outcome = _outcome(entries[turn.task.name], turn)
         # A document may be large, and an error holds the frames with what was read so far.
         turn.result = turn.error = None
-        view.line(told)
-        alarms.tell(job, told, voice)
+        if not voice.json:
+            outcome = replace(outcome, result=replace(outcome.result, document=None))
+        outcomes[outcome.name] = outcome
+        view.line(outcome)
+        alarms.notify(job, outcome, voice)
 
     view = View(job, list(entries), voice, lines=lines, news=_only_news())
     with view, Fleet(tasks, orders.jobs, orders.deadline_s) as fleet:
@@ -203,12 +171,14 @@ def run_fleet(
             for turn in fleet.turns:  # some may have ended meanwhile
                 if not turn.interrupted and turn.task.name not in outcomes:
                     report(turn)
-    rest = [_not_done(entry) for entry in orders.entries if entry.name not in outcomes]
-    outcomes |= {outcome.entry.name: outcome for outcome in rest}
+    for entry in orders.entries:
+        if entry.name not in outcomes:
+            error = Interrupted("interrupted before it was done")
+            outcomes[entry.name] = Outcome(entry.name, entry.target, entry.station, 0.0, failure(error))
     alarms.write(set(orders.inventory.plcs), voice)
     ordered = [outcomes[entry.name] for entry in orders.entries]
-    document = fleet_document(job, orders, ordered, interrupted=interrupted)
-    return document | {"time": time_, "duration_s": round(time.monotonic() - began, 3)}, interrupted
+    run = FleetRun(job, time_, time.monotonic() - began, orders.inventory.file, ordered, interrupted)
+    return fleet_document(run), interrupted
 
 
 def ended(job: str, document: dict[str, Any], voice: Voice, alarms: Alarms, *, interrupted: bool) -> int:
@@ -235,68 +205,8 @@ def ended(job: str, document: dict[str, Any], voice: Voice, alarms: Alarms, *, i
     return 1 if summary["failed"] else 0
 
 
-def fleet_document(job: str, orders: Orders, outcomes: list[Outcome], *, interrupted: bool) -> dict[str, Any]:
-    """``fatektool.fleet/1``, but for its time and duration."""
-    not_done = sum(outcome.exit_code == INTERRUPTED for outcome in outcomes)
-    ok = sum(outcome.exit_code == 0 for outcome in outcomes)
-    slowest = sorted(outcomes, key=lambda outcome: outcome.duration_s, reverse=True)[:_SLOWEST]
-    return {
-        "schema": "fatektool.fleet/1",
-        "time": "",
-        "job": job,
-        "inventory": str(orders.inventory.file),
-        "duration_s": 0.0,
-        "interrupted": interrupted,
-        "summary": {
-            "total": len(outcomes),
-            "ok": ok,
-            "failed": len(outcomes) - ok - not_done,
-            "changed": sum(outcome.changed is True for outcome in outcomes),
-            "not_done": not_done,
-        },
-        "slowest": [
-            {"name": outcome.entry.name, "duration_s": round(outcome.duration_s, 3)}
-            for outcome in slowest
-            if outcome.duration_s
-        ],
-        "plcs": [
-            {
-                "name": outcome.entry.name,
-                "target": outcome.entry.target,
-                "station": outcome.entry.station,
-                "exit_code": outcome.exit_code,
-                "duration_s": round(outcome.duration_s, 3),
-                "changed": outcome.changed,
-                "file": None if outcome.file is None else str(outcome.file),
-                "words": outcome.words,
-                "document": outcome.document,
-            }
-            for outcome in outcomes
-        ],
-    }
-
-
-def _told(entry: PlcEntry, turn: Turn[Done]) -> Told:
-    done, error = turn.result, turn.error
-    code, words = (done.exit_code, done.words) if done is not None else (70, "nothing came of it")
-    up: bool | None = None if done is None else done.up
-    if error is not None:
-        code, words = error.exit_code, str(error)
-        if isinstance(error, LineError) and not isinstance(error, PortBusy):
-            up = False
-        elif isinstance(error, PlcError):
-            up = True
-    if done is not None:  # those who are told may keep it, and look at its document no more
-        done = replace(done, document={})
-    return Told(entry.name, entry.target, entry.station, code, words, turn.duration_s or 0.0, up, done)
-
-
-def _document(turn: Turn[Done]) -> dict[str, Any] | None:
-    if turn.error is not None:
-        return error_document(turn.error)
-    return None if turn.result is None else turn.result.document
-
-
-def _not_done(entry: PlcEntry) -> Outcome:
-    error = Interrupted("interrupted before it was done")
-    return Outcome(entry, INTERRUPTED, error_document(error), str(error), 0.0)
+def _outcome(entry: PlcEntry, turn: Turn[Result]) -> Outcome:
+    result = turn.result
+    if result is None:
+        result = failure(turn.error or FatektoolError("nothing came of it"))
+    return Outcome(entry.name, entry.target, entry.station, turn.duration_s or 0.0, result)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from rich.text import Text
 
-    from fatektool.cli.many.alarms import Told
+    from fatektool.cli.many.outcome import Outcome
     from fatektool.cli.shared.output import Voice
     from fatektool.jobs.fleet.rounds import Fleet, Turn
 
@@ -66,15 +66,15 @@ class View:
         if self.live:
             self._rich.stop()
 
-    def line(self, told: Told) -> None:
+    def line(self, outcome: Outcome) -> None:
         """One PLC has ended."""
+        result = outcome.result
         self._ended += 1
-        self._not_well += told.exit_code != 0
-        nothing_new = told.exit_code == 0 and not (told.done is not None and told.done.changed)
-        if not self._lines or (self._news and nothing_new):
+        self._not_well += result.exit_code != 0
+        if not self._lines or (self._news and result.exit_code == 0 and not result.changed):
             return
-        state = _WORDS.get(told.exit_code, f"FAILED {told.exit_code}")
-        text = f"{told.name:<{self._width}}  {state:<8}  {' '.join(told.words.split())}"
+        state = _WORDS.get(result.exit_code, f"FAILED {result.exit_code}")
+        text = f"{outcome.name:<{self._width}}  {state:<8}  {' '.join(result.words.split())}"
         if self.live and sys.stdout.isatty():
             self._rich.console.print(text, markup=False, highlight=False, soft_wrap=True)
         else:

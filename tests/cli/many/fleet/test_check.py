@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 from fatektool.errors import UsageError
-from fatektool.jobs.fleet.check import Checked, State, age_words, check_backup, parse_age, worst
+from fatektool.jobs.check.age import age_words, parse_age
+from fatektool.jobs.check.plc import check_backup
+from fatektool.jobs.check.result import CheckResult, State, worst
 from fatektool.program.archive import Backup, save_backup
 from fatektool.program.image import Program
 from fatektool.transport.lock import PortLock
@@ -228,7 +230,7 @@ def test_it_is_over_at_its_deadline(cli: Cli, plant: Hall) -> None:
 @pytest.mark.usefixtures("place")
 def test_the_age_of_a_backup(age: timedelta, state: State, words: str) -> None:
     kept(OLD, "press.json", age)
-    found = Checked()
+    found = CheckResult()
     check_backup(Path("press.json"), found, max_age_s=36 * 3600, now=datetime.now(UTC))
     assert found.state is state
     assert found.words.startswith(words)
@@ -245,7 +247,7 @@ def test_a_backup_without_its_program_is_none() -> None:
         ("cut.json", "cut.json: pages: expected 8 for 400 words, got 0"),
         ("no.json", "cannot read no.json"),
     ):
-        found = Checked()
+        found = CheckResult()
         check_backup(Path(name), found, max_age_s=None, now=datetime.now(UTC))
         assert found.state is State.CRITICAL
         assert found.words.startswith(f"NO GOOD BACKUP: {words}")
@@ -283,7 +285,7 @@ def test_a_fault_of_ours_and_an_interrupt_are_unknown(
     def fail(*_: object, **__: object) -> None:
         raise raised
 
-    monkeypatch.setattr("fatektool.cli.many.check.check_plc", fail)
+    monkeypatch.setattr("fatektool.cli.many.run_check.check_plc", fail)
     assert plugin(cli, "-p", "press")[1] == "a fault of fatektool itself: ZeroDivisionError: oops"
     raised = KeyboardInterrupt()
     assert plugin(cli, "-p", "press")[:2] == (3, "interrupted")

@@ -1,4 +1,4 @@
-"""Is a PLC as it ought to be? For monitoring: facts with a state each, and the worst of them.
+"""Is a PLC as it ought to be? For monitoring: each fact with its state.
 
 =====================  ==========  ==============================================================
 fact                   if not so   what it is
@@ -15,19 +15,18 @@ backup                 CRITICAL    the last one can be read, and has a program i
 its age                WARNING     not above the limit, not of the future
 =====================  ==========  ==============================================================
 
-States are those of monitoring plugins (Monitoring Plugins Development Guidelines, section 2.3). UNKNOWN is
-the weakest of the bad ones: what could not be looked at hides nothing of what was found. So the PLC is asked
-first, and the reference is opened afterwards.
+The PLC is asked first, and the reference is opened afterwards: what is wrong with the file hides nothing of
+what is wrong with the PLC.
 """
 
 from __future__ import annotations
 
-import re
-from dataclasses import dataclass, field
-from enum import IntEnum
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from fatektool.errors import DataError, FatektoolError, LineError, PortBusy, UsageError
+from fatektool.errors import DataError, FatektoolError, UsageError
+from fatektool.jobs.check.age import age_words
+from fatektool.jobs.check.result import CheckResult, State
 from fatektool.jobs.programs.safekeeping import age_s, require_ladder
 from fatektool.jobs.programs.verify import verify_file
 from fatektool.jobs.progress import Progress, no_progress
@@ -35,102 +34,73 @@ from fatektool.program.archive import load_backup
 from fatektool.project.program_file import load_program
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable
     from datetime import datetime
     from pathlib import Path
 
     from fatektool.client import Plc
     from fatektool.project.program_file import ProgramFile
-    from fatektool.protocol.status import StatusFlags
 
-_AGE: Final = re.compile(r"(\d{1,9}(?:\.\d{1,3})?)([smhd])", re.ASCII)
-_UNITS: Final = {"s": 1, "m": 60, "h": 3600, "d": 86400}
 _CLOCKS_APART_S: Final = 3600
 
 
-class State(IntEnum):
-    """What a plugin's exit code says."""
-
-    OK = 0
-    WARNING = 1
-    CRITICAL = 2
-    UNKNOWN = 3
-
-
-_BY_WEIGHT: Final = (State.CRITICAL, State.WARNING, State.UNKNOWN, State.OK)
-
-
-def worst(states: Iterable[State]) -> State:
-    """The one that somebody must look at first; OK if there is none."""
-    return min(states, key=_BY_WEIGHT.index, default=State.OK)
-
-
 @dataclass(frozen=True, slots=True)
-class Fact:
-    """One thing that was looked at."""
-
-    state: State
-    words: str
-
-
-@dataclass(slots=True)
-class Checked:
-    """What was found.
+class CheckPlan:
+    """What is checked beside the PLC's status.
 
     Attributes:
-        facts: in the order of the table above.
-        figures: performance data by label, as a plugin prints it: ``0.031s``, ``0``, ``1200s;129600``.
-        flags: the PLC's status; None if it was not reached.
-        differs: True if the program is not the reference; None if it was not compared.
+        expect: the mode: ``run``, ``stop`` or ``any``.
+        reference: the backup or project whose program ought to be in the PLC; None for none.
+        backup: the last backup; None for none.
+        max_age_s: how old that may be; None for any age.
     """
 
-    facts: list[Fact] = field(default_factory=list)
-    figures: dict[str, str] = field(default_factory=dict)
-    flags: StatusFlags | None = None
-    differs: bool | None = None
-
-    @property
-    def state(self) -> State:
-        """The worst of all facts."""
-        return worst(fact.state for fact in self.facts)
-
-    @property
-    def words(self) -> str:
-        """All facts on one line, the worst first."""
-        ordered = sorted(self.facts, key=lambda fact: _BY_WEIGHT.index(fact.state))
-        return ", ".join(fact.words for fact in ordered)
-
-    def add(self, bad: State | None, words: str) -> None:
-        """Note a fact; ``bad`` is None for one that is as it ought to be."""
-        self.facts.append(Fact(State.OK if bad is None else bad, words))
-
-    def fail(self, error: FatektoolError) -> None:
-        """Note what kept the PLC from being looked at."""
-        dead = isinstance(error, LineError) and not isinstance(error, PortBusy)
-        self.add(State.CRITICAL if dead else State.UNKNOWN, error.message)
+    expect: str
+    reference: Path | None
+    backup: Path | None
+    max_age_s: float | None
 
 
 def check_plc(
+    plan: CheckPlan,
+    connect: Callable[[], Plc],
+    *,
+    unfinished: Callable[[], str | None],
+    now: datetime,
+    progress: Progress = no_progress,
+) -> CheckResult:
+    """Check one PLC, and its backup whether the PLC answers or not.
+
+    Args:
+        plan: what is checked.
+        connect: opens the line; what fails there is a fact too.
+        unfinished: since when a restore into this PLC is unfinished; None if there is none.
+        now: the present.
+        progress: told of each page.
+    """
+    found = CheckResult()
+    try:
+        with connect() as plc:
+            _check_plc(plc, found, expect=plan.expect, reference=plan.reference, progress=progress)
+    except FatektoolError as error:
+        found.fail(error)
+    since = unfinished()
+    if since is not None and found.differs is not False:  # the reference's program is whole
+        found.add(State.CRITICAL, f"restore UNFINISHED since {since}: it must not RUN")
+    if plan.backup is not None:
+        check_backup(plan.backup, found, max_age_s=plan.max_age_s, now=now)
+    return found
+
+
+def _check_plc(
     plc: Plc,
-    found: Checked,
+    found: CheckResult,
     *,
     expect: str,
     reference: Path | None,
     progress: Progress = no_progress,
 ) -> None:
-    """Look at a PLC.
-
-    Args:
-        plc: the PLC.
-        found: takes the facts.
-        expect: ``run``, ``stop`` or ``any``.
-        reference: the backup or project whose program ought to be in it; None for none.
-        progress: told of each page.
-
-    Raises:
-        LineError: no answer, or none any more.
-        PlcError: the PLC refuses.
-    """
+    """Check a PLC's status, then its program; ``found`` gets the facts as far as the line holds."""
     clock = plc.link.transport.clock
     began = clock()
     found.flags = flags = plc.brief_status().flags
@@ -161,7 +131,7 @@ def check_plc(
     _compare(plc, found, str(reference), program, progress)
 
 
-def _compare(plc: Plc, found: Checked, name: str, program: ProgramFile, progress: Progress) -> None:
+def _compare(plc: Plc, found: CheckResult, name: str, program: ProgramFile, progress: Progress) -> None:
     compared = verify_file(plc, program, progress=progress)
     different = compared.pages
     found.differs = not different.same
@@ -180,7 +150,7 @@ def _compare(plc: Plc, found: Checked, name: str, program: ProgramFile, progress
         )
 
 
-def check_backup(path: Path, found: Checked, *, max_age_s: float | None, now: datetime) -> None:
+def check_backup(path: Path, found: CheckResult, *, max_age_s: float | None, now: datetime) -> None:
     """Look at the last backup: one that cannot be read, or has lost its program, is none.
 
     Args:
@@ -204,23 +174,3 @@ def check_backup(path: Path, found: Checked, *, max_age_s: float | None, now: da
         found.add(State.WARNING, f"backup {age_words(age)} OLD, expected at most {age_words(max_age_s)}")
     else:
         found.add(None, f"backup {age_words(max(0.0, age))} old")
-
-
-def parse_age(text: str) -> float:
-    """Read ``36h``, ``90m``, ``7d`` or ``3600s``.
-
-    Raises:
-        UsageError: it is none.
-    """
-    match = _AGE.fullmatch(text.strip())
-    if match is None:
-        raise UsageError(f"--max-age {text!r}: expected a number and s, m, h or d, such as 36h")
-    return float(match[1]) * _UNITS[match[2]]
-
-
-def age_words(seconds: float) -> str:
-    """An age in its largest whole unit: ``3 h``, ``2 d``."""
-    for unit, size in reversed(_UNITS.items()):
-        if seconds >= 2 * size or unit == "s":
-            return f"{seconds / size:.0f} {unit}"
-    raise AssertionError  # seconds fit always

@@ -1,0 +1,80 @@
+"""The check of one PLC, as ``check`` and ``fleet check`` run it."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from fatektool.cli.many.documents import check_document
+from fatektool.cli.many.outcome import Result
+from fatektool.cli.shared.unfinished import unfinished_document
+from fatektool.jobs.check.plc import check_plc
+from fatektool.jobs.progress import Progress, no_progress
+
+if TYPE_CHECKING:
+    from fatektool.cli.shared.options import Connection
+    from fatektool.cli.shared.output import Voice
+    from fatektool.jobs.check.plc import CheckPlan
+    from fatektool.jobs.check.result import CheckResult
+    from fatektool.transport.limit import Limit
+    from fatektool.transport.shared_line import SharedLine
+
+
+def run_check(
+    connection: Connection,
+    plan: CheckPlan,
+    voice: Voice,
+    *,
+    limit: Limit,
+    shared: SharedLine | None = None,
+    progress: Progress = no_progress,
+) -> CheckResult:
+    """Check one PLC.
+
+    Args:
+        connection: where it is.
+        plan: what is checked.
+        voice: prints notes about the line.
+        limit: ends the check.
+        shared: keeps the line open for the next PLC on it.
+        progress: told of each page.
+    """
+
+    def unfinished_since() -> str | None:
+        record = unfinished_document(connection.target, connection.station)
+        return None if record is None else record["time"]
+
+    return check_plc(
+        plan,
+        partial(connection.open, voice, limit=limit, shared=shared),
+        unfinished=unfinished_since,
+        now=datetime.now(UTC),
+        progress=progress,
+    )
+
+
+def check_result(connection: Connection, name: str, plan: CheckPlan, found: CheckResult) -> Result:
+    """What a check found, as the result of a turn."""
+    return Result(
+        int(found.state),
+        found_document(connection, name, found),
+        found.words,
+        plan.reference,
+        found.differs,
+        found.flags,
+        found.flags is not None,
+    )
+
+
+def found_document(connection: Connection, name: str, found: CheckResult) -> dict[str, Any]:
+    """``fatektool.check/1`` of a PLC; ``name`` is what it is called."""
+    return check_document(
+        found.state,
+        found.words,
+        found,
+        name=name,
+        target=connection.target,
+        station=connection.station,
+        protocol=connection.protocol,
+    )
