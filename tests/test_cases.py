@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import subprocess
@@ -28,8 +29,11 @@ def test_that_fails(number):
 def cases(folder: Path, *words: str) -> tuple[str, str]:
     """The cases that a run draws, and what it prints."""
     (folder / "cases").unlink(missing_ok=True)
-    command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-p", "no:xdist", *words]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-p", "_hypothesis_pytestplugin"]
+    environment = os.environ | {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1", "PYTEST_ADDOPTS": ""}
+    done = subprocess.run(
+        [*command, *words], cwd=folder, capture_output=True, text=True, check=False, env=environment
+    )
     assert done.returncode == 1, done
     assert not list(folder.glob(".hypothesis/examples"))
     return (folder / "cases").read_text(), done.stdout

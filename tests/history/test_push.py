@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import shlex
 import socket
@@ -11,6 +12,7 @@ import sys
 import threading
 import time
 from contextlib import contextmanager
+from types import SimpleNamespace
 from typing import TYPE_CHECKING
 from wsgiref.simple_server import WSGIRequestHandler, make_server
 
@@ -20,7 +22,7 @@ from dulwich.server import BackendRepo, DictBackend
 from dulwich.web import make_wsgi_chain
 
 from fatektool.errors import PushFailed
-from fatektool.history.push import push
+from fatektool.history.push import bounded, push
 from fatektool.history.push.outcome import failed, without_secrets
 from tests.history.books import GIT, ONE, THREE, TWO, Book, git
 
@@ -310,7 +312,11 @@ def test_a_silent_one_is_ended_with_all_that_it_started(
     book: Book, nas: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     started = tmp_path / "started"
-    ssh = script(tmp_path / "ssh", f"#!/bin/sh\necho $$ > {started}\nexec tail -f /dev/null\n")
+    ssh = script(tmp_path / "ssh", f"#!/bin/sh\necho $$ > x; mv x {started}\nexec tail -f /dev/null\n")
+    hours = itertools.count(step=3600.0)
+    clock = SimpleNamespace(monotonic=lambda: next(hours) if started.exists() else 0.0)
+    monkeypatch.setattr(bounded, "time", clock)
+    monkeypatch.setattr(bounded, "_LOOK_S", 0.01)
     monkeypatch.setenv("GIT_SSH_COMMAND", str(ssh))
     with pytest.raises(PushFailed, match="nothing was heard of git for 8 s; the history here is whole"):
         push(book.folder, f"ssh://nas.invalid{nas}", timeout_s=2)

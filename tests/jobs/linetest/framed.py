@@ -6,13 +6,12 @@ when nothing came for the message detection time (R4148's high byte, 12 ms); wha
 
 from __future__ import annotations
 
-import socket
-import threading
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from tests.guard import GUARD_S
+from fatektool.simulator.listen.servers import Server
+from tests.hurry import hurried
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -81,19 +80,27 @@ class FramedReply:
         return message
 
 
+@dataclass
+class _Behind:
+    """The program as a simulator's lines."""
+
+    program: FramedReply
+    powered: bool = True
+
+    def line(self, *, whole_answers: bool = False) -> _Behind:
+        assert not whole_answers, "it hangs on a stream"
+        return self
+
+    def receive(self, data: bytes, now: float) -> Pieces:
+        return self.program.receive(data, now)
+
+    datagram = receive
+
+
 @contextmanager
 def framed_on_tcp(program: FramedReply) -> Iterator[str]:
     """The program behind a gateway, in a thread; gives its target."""
-    with socket.create_server(("127.0.0.1", 0)) as server:
-
-        def serve() -> None:
-            client, _ = server.accept()
-            with client:
-                while data := client.recv(4096):
-                    for _, piece in program.receive(data, 0.0):
-                        client.sendall(piece)
-
-        thread = threading.Thread(target=serve, daemon=True)
-        thread.start()
-        yield f"tcp://127.0.0.1:{server.getsockname()[1]}"
-        thread.join(GUARD_S)
+    server = Server(_Behind(program))
+    door = server.open_tcp()
+    with hurried(server):
+        yield door.address
