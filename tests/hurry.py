@@ -14,17 +14,12 @@ import os
 import threading
 import time
 from contextlib import ExitStack, contextmanager
-from itertools import count
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 from unittest.mock import patch
 
-from fatektool import connection
-from fatektool.errors import TransportTimeout
 from fatektool.simulator.listen.pty import PtyDoor
 from fatektool.simulator.listen.servers import running
-from fatektool.transport import tcp, udp
-from fatektool.transport.base import Transport
-from fatektool.transport.serial_line import port as serial_port
+from tests.clocked import clocked
 
 if TYPE_CHECKING:
     import selectors
@@ -32,15 +27,9 @@ if TYPE_CHECKING:
 
     from fatektool.simulator.listen.listeners import Line
     from fatektool.simulator.listen.servers import Server
-    from fatektool.transport.base import LineSettings
-
-_LOOK_S = 0.005
-"""How long a client waits for real before it asks whether anything can come."""
-_LOOKS = 1000
-"""How often it asks: then what was on its way is lost, such as in a terminal that was full."""
 
 
-class Clock:
+class ServerClock:
     """A clock that stands while a client has a line, and jumps where it waits; it runs while none has.
 
     Args:
@@ -160,7 +149,7 @@ class Clock:
 class _Counted:
     """The line of a socket, whose requests are counted."""
 
-    def __init__(self, line: Line, clock: Clock) -> None:
+    def __init__(self, line: Line, clock: ServerClock) -> None:
         self._line = line
         self._clock = clock
 
@@ -173,88 +162,14 @@ class _Counted:
         return self._line.datagram(data, now)
 
 
-class Hurried(Transport):
-    """A medium on such a clock.
-
-    Args:
-        inner: the medium.
-        clock: its server's.
-    """
-
-    def __init__(self, inner: Transport, clock: Clock) -> None:
-        self._inner = inner
-        self._clock = clock
-        self._closed = False
-        self.name = inner.name
-        self.line = inner.line
-        self.clock = clock.now
-        clock.opened(keeps=inner.line is not None)
-
-    def read(self, max_bytes: int, timeout_s: float) -> bytes:
-        deadline = self.clock() + timeout_s
-        for look in count():
-            rest_s = deadline - self.clock()
-            try:
-                data = self._inner.read(max_bytes, _LOOK_S if look % 2 and rest_s > 0 else 0.0)
-            except TransportTimeout:
-                if rest_s <= 0:
-                    break
-                self._clock.jump(deadline, sure=look > _LOOKS)
-            else:
-                self._clock.read(len(data))
-                return data
-        raise TransportTimeout(f"{self.name}: nothing came within {timeout_s:.3f} s")
-
-    def write(self, data: bytes) -> None:
-        self._clock.asked(len(data))
-        self._inner.write(data)
-
-    def drain(self) -> bytes:
-        data = self._inner.drain()
-        self._clock.read(len(data))
-        return data
-
-    def close(self) -> None:
-        self._inner.close()
-        if not self._closed:
-            self._closed = True
-            self._clock.closed()
-
-    def set_line(self, line: LineSettings) -> None:
-        self._inner.set_line(line)
-        self.line = self._inner.line
-
-    def set_dtr(self, *, on: bool) -> bool:
-        return self._inner.set_dtr(on=on)
-
-    def renew(self) -> None:
-        self._inner.renew()
-
-
 @contextmanager
 def hurried(server: Server) -> Iterator[Server]:
     """Serve in a thread, as ``running`` does, on a clock that jumps for the clients in this process."""
-    clock = Clock(server)
+    clock = ServerClock(server)
     addresses = {door.address for door in server.doors}
-
-    def wrapping(module: Any, name: str, address_of: Callable[..., str]) -> Any:
-        make = getattr(module, name)
-
-        def made(*words: Any, **named: Any) -> Transport:
-            inner: Transport = make(*words, **named)
-            return Hurried(inner, clock) if address_of(*words) in addresses else inner
-
-        return patch.object(module, name, made)
-
-    def of_sockets(scheme: str) -> Callable[..., str]:
-        return lambda _, address, *__: f"{scheme}://{address[0]}:{address[1]}"
-
     with ExitStack() as stack:
         for door in server.doors:
             if isinstance(door, PtyDoor):
                 stack.enter_context(patch.object(os, "read", clock.read_by(door)))
-        stack.enter_context(wrapping(tcp, "TcpTransport", of_sockets("tcp")))
-        stack.enter_context(wrapping(udp, "UdpTransport", of_sockets("udp")))
-        stack.enter_context(wrapping(serial_port, "open_serial", lambda path, *_: str(path)))
-        stack.enter_context(patch.object(connection, "sleep", clock.skip))
+        stack.enter_context(clocked(clock, addresses.__contains__))
         yield stack.enter_context(running(server))

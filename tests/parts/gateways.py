@@ -56,7 +56,7 @@ def ser2net(device: Path, scheme: str, folder: Path, options: str = "") -> Gatew
         options: more lines of its configuration for this port.
     """
     port, ready = free_port(), free_port()
-    accepter = f"tcp,127.0.0.1,{port}"
+    accepter = f"tcp(nodelay),127.0.0.1,{port}"  # else it keeps the rest of an answer for 40 ms
     if scheme == "rfc2217":
         accepter = f"telnet(rfc2217),{accepter}"
     settings = folder / f"ser2net-{port}.yaml"

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import re
 import socket
 import threading
-import time
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
+from fatektool import connection
 from fatektool.cli.many.fleet import jobs as fleet_jobs
 from fatektool.jobs.status import read_status
 from fatektool.simulator.build import build_simulation
@@ -40,16 +41,16 @@ class OneAtATime:
 
     Args:
         plc: address of the server.
-        late_s: how long after a connection ended the next one is served.
+        late: how many are turned away after a connection ended, before the next one is served.
         says: what others are told before they are closed; None refuses them with a reset.
     """
 
-    def __init__(self, plc: str, late_s: float, says: bytes | None) -> None:
+    def __init__(self, plc: str, late: float, says: bytes | None) -> None:
         host, _, port = plc.partition("://")[2].rpartition(":")
         self._plc = (host, int(port))
-        self._late_s = late_s
+        self._late = late
         self._says = says
-        self._free_at = 0.0
+        self._to_turn_away = 0.0
         self._busy = threading.Lock()
         self.served = self.refused = 0
         self._listening = socket.create_server(("127.0.0.1", 0))
@@ -65,7 +66,8 @@ class OneAtATime:
                 client, _ = self._listening.accept()
             except OSError:
                 return
-            if time.monotonic() < self._free_at or not self._busy.acquire(blocking=False):
+            if self._to_turn_away > 0 or not self._busy.acquire(blocking=False):
+                self._to_turn_away -= 1
                 self.refused += 1
                 if self._says is None:
                     client.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, b"\1\0\0\0\0\0\0\0")
@@ -81,7 +83,7 @@ class OneAtATime:
             back = threading.Thread(target=_pump, args=(plc, client), daemon=True)
             back.start()
             _pump(client, plc)
-        self._free_at = time.monotonic() + self._late_s
+            self._to_turn_away = self._late
         self._busy.release()
 
 
@@ -91,13 +93,19 @@ def _pump(source: socket.socket, sink: socket.socket) -> None:
             sink.sendall(data)
 
 
+@pytest.fixture(autouse=True)
+def no_pauses(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Before a connection that failed is tried again."""
+    monkeypatch.setattr(connection, "sleep", lambda _: None)
+
+
 @contextmanager
-def busy_gateway(late_s: float, says: bytes | None) -> Iterator[OneAtATime]:
+def busy_gateway(late: float, says: bytes | None) -> Iterator[OneAtATime]:
     simulation = build_simulation(STATIONS, ladder_words=WORDS, program=program(WORDS).pages)
     server = Server(simulation)
     door = server.open_tcp()
     with running(server):
-        gateway = OneAtATime(door.address, late_s, says)
+        gateway = OneAtATime(door.address, late, says)
         yield gateway
         gateway.close()
 
@@ -117,7 +125,7 @@ WAYS = [pytest.param(None, id="reset"), pytest.param(b"Port already in use\r\n",
 def test_plcs_behind_one_gateway_share_its_connection(
     cli: Cli, place: Path, says: bytes | None, job: tuple[str, ...]
 ) -> None:
-    with busy_gateway(3600, says) as gateway:  # a second connection would never be served
+    with busy_gateway(math.inf, says) as gateway:  # a second connection would never be served
         inventory(*[gateway.target] * 3)
         done = cli("fleet", *job, "--json")
     found = plcs_of(done.document("fleet"))
@@ -129,17 +137,17 @@ def test_plcs_behind_one_gateway_share_its_connection(
 
 @pytest.mark.parametrize("says", WAYS)
 def test_commands_one_behind_the_other_wait_for_the_gateway(cli: Cli, says: bytes | None) -> None:
-    with busy_gateway(0.5, says) as gateway:
+    with busy_gateway(2, says) as gateway:
         for station in STATIONS:
             done = cli("status", "-p", gateway.target, "-s", station, "--timeout", "2")
             assert done.code == 0, done.err
     assert gateway.served == 3
-    assert gateway.refused
+    assert gateway.refused >= 4
 
 
 @pytest.mark.parametrize("says", WAYS)
 def test_a_gateway_that_stays_busy_is_named(cli: Cli, says: bytes | None) -> None:
-    with busy_gateway(3600, says) as gateway:
+    with busy_gateway(math.inf, says) as gateway:
         assert cli("status", "-p", gateway.target).code == 0
         done = cli("status", "-p", gateway.target, "--timeout", "0.01", "--retries", "2")
     assert done.code == 3
@@ -149,9 +157,13 @@ def test_a_gateway_that_stays_busy_is_named(cli: Cli, says: bytes | None) -> Non
 
 
 def test_a_plc_that_is_silent_does_not_keep_the_line_from_the_next(cli: Cli) -> None:
-    with busy_gateway(0.05, None) as gateway:
+    with busy_gateway(1, None) as gateway:
         inventory(*[gateway.target] * 3)
-        text = Path("fatek.toml").read_text(encoding="utf-8").replace("station = 2", "station = 77")
+        text = (
+            Path("fatek.toml")
+            .read_text(encoding="utf-8")
+            .replace("station = 2", "station = 77\ntimeout_s = 0.01")
+        )
         Path("fatek.toml").write_text(text, encoding="utf-8")
         done = cli("fleet", "status", "--json")
     assert [plc["exit_code"] for plc in plcs_of(done.document("fleet")).values()] == [0, 3, 0], done.err
@@ -159,7 +171,7 @@ def test_a_plc_that_is_silent_does_not_keep_the_line_from_the_next(cli: Cli) -> 
 
 def test_who_waits_for_the_line_gets_it_between_two_plcs(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
     order: list[str] = []
-    with busy_gateway(0.05, None) as gateway:
+    with busy_gateway(1, None) as gateway:
         waiting = PortLock(gateway.target.partition("://")[2], 60)
 
         def wait() -> None:
@@ -205,7 +217,9 @@ def test_a_fleet_behind_ser2net(cli: Cli, place: Path, scheme: str) -> None:
 
 @needs("ser2net")
 @pytest.mark.skipif(not PTY_SUPPORTED, reason="no pseudo terminals here")
-def test_ser2net_that_another_holds_is_waited_for(cli: Cli, place: Path) -> None:
+def test_ser2net_that_another_holds_is_waited_for(
+    cli: Cli, place: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     server = Server(build_simulation([1], ladder_words=WORDS))
     device = Path(server.open_pty(place / "plc").address)
     with running(server), ser2net(device, "tcp", place) as gateway:
@@ -217,6 +231,15 @@ def test_ser2net_that_another_holds_is_waited_for(cli: Cli, place: Path) -> None
             assert done.code == 3
             assert re.search("after it said 'Port already in use'|reset", done.err), done.err
             assert "ther programs may hold" in done.err
-            threading.Timer(0.3, holder.shutdown, (socket.SHUT_RDWR,)).start()
-            done = cli("status", "-p", gateway.target, "--timeout", "2")
+            pauses: list[float] = []
+
+            def pause(seconds: float) -> None:
+                if not pauses:
+                    holder.shutdown(socket.SHUT_RDWR)
+                pauses.append(seconds)
+                threading.Event().wait(0.02)  # ser2net takes a while to notice
+
+            monkeypatch.setattr(connection, "sleep", pause)
+            done = cli("status", "-p", gateway.target, "--timeout", "2", "--retries", "1000")
+            assert pauses
             assert done.code == 0, done.err

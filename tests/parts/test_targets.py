@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import time
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -17,6 +18,7 @@ from fatektool.simulator.build import build_simulation
 from fatektool.simulator.listen.pty import PTY_SUPPORTED
 from fatektool.simulator.listen.servers import Server, running
 from tests.cli.running import one_line
+from tests.clocked import clocked
 from tests.parts.gateways import ser2net, socat_device, socat_tcp, socat_udp
 from tests.parts.programs import needs
 from tests.program.samples import backup, program
@@ -33,10 +35,47 @@ WORDS = 320
 OLD, NEW = program(WORDS, seed=1), program(WORDS, seed=2)
 CUT_AT = 3
 """The page at which the line is cut."""
-QUICK = ("--format", "8N1", "--timeout", "1", "--retries", "1")
-ENOUGH = ("--format", "8N1", "--timeout", "2")
+TRIED_TWICE = ("--format", "8N1", "--timeout", "60", "--retries", "1")
+ENOUGH = ("--format", "8N1", "--timeout", "60")
 
 needs_pty = pytest.mark.skipif(not PTY_SUPPORTED, reason="no pseudo terminals here")
+
+
+class CutClock:
+    """A clock on which nobody waits for what a line that is cut will never bring."""
+
+    def __init__(self) -> None:
+        self.cut = False
+        self._skipped_s = 0.0
+
+    def now(self) -> float:
+        return time.monotonic() + self._skipped_s
+
+    def skip(self, seconds: float) -> None:
+        self._skipped_s += seconds
+
+    def jump(self, deadline: float, *, sure: bool = False) -> None:
+        if self.cut or sure:
+            self._skipped_s += max(0.0, deadline - self.now())
+
+    def opened(self, *, keeps: bool) -> None:
+        """Whoever comes."""
+
+    def closed(self) -> None:
+        """Whoever goes."""
+
+    def asked(self, size: int) -> None:
+        """Whatever goes out."""
+
+    def read(self, size: int) -> None:
+        """Whatever comes."""
+
+
+@pytest.fixture
+def clock() -> Iterator[CutClock]:
+    made = CutClock()
+    with clocked(made, bool):
+        yield made
 
 
 class Way(NamedTuple):
@@ -114,11 +153,20 @@ def opened(name: str, server: Server, folder: Path, patch: pytest.MonkeyPatch) -
 
 @pytest.fixture(params=[pytest.param(name, marks=[needs_pty, mark]) for name, mark in WAYS.items()])
 def plc_and_way(
-    request: pytest.FixtureRequest, place: Path, monkeypatch: pytest.MonkeyPatch
+    request: pytest.FixtureRequest, place: Path, monkeypatch: pytest.MonkeyPatch, clock: CutClock
 ) -> Iterator[tuple[SimulatedPlc, Way]]:
     simulation = build_simulation(ladder_words=WORDS, program=OLD.pages)
     with opened(request.param, Server(simulation), place, monkeypatch) as way:
-        yield simulation.plcs[1], way
+
+        def cut() -> None:
+            way.cut()
+            clock.cut = True
+
+        def put_back() -> None:
+            way.put_back()
+            clock.cut = False
+
+        yield simulation.plcs[1], way._replace(cut=cut, put_back=put_back)
 
 
 @contextmanager
@@ -148,7 +196,7 @@ def test_backup_restore_and_a_line_that_is_cut(
     save_backup(backup(NEW), place / "new.json")
 
     with cut_at(plc, "read_page", CUT_AT, way.cut):
-        done = cli("backup", "old.json", "-p", way.target, *QUICK)
+        done = cli("backup", "old.json", "-p", way.target, *TRIED_TWICE)
     assert_cut(done, way, 3)
     assert not (place / "old.json").exists()
 
@@ -158,7 +206,7 @@ def test_backup_restore_and_a_line_that_is_cut(
 
     restore = ("restore", "new.json", "-p", way.target, "--yes")
     with cut_at(plc, "write_page", CUT_AT, way.cut):
-        done = cli(*restore, *QUICK)
+        done = cli(*restore, *TRIED_TWICE)
     assert_cut(done, way, 6)
     assert "new.json" in done.err
     assert pages(plc)[CUT_AT] == NEW.pages[CUT_AT]
@@ -187,8 +235,9 @@ def test_a_loop_gives_back_what_is_sent(cli: Cli) -> None:
     assert done.document("loopback")["ok"] == 3
 
 
-def test_no_plc_is_at_the_end_of_a_loop(cli: Cli) -> None:
-    done = cli("status", "-p", "loop://", *QUICK)
+def test_no_plc_is_at_the_end_of_a_loop(cli: Cli, clock: CutClock) -> None:
+    clock.cut = True
+    done = cli("status", "-p", "loop://", *TRIED_TWICE)
     assert done.code == 3
     assert "its own request only" in one_line(done.err)
 
