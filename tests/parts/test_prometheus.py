@@ -272,7 +272,7 @@ def test_prometheus_alarms_of_a_plc_that_died_after_its_backup(cli: Cli, place: 
     port = free_port()
     with exporter(place / "prom") as scraped:
         (place / "prometheus.yml").write_text(
-            f"global: {{scrape_interval: 1s, evaluation_interval: 1s}}\nrule_files: ['{RULES}']\n"
+            f"global: {{scrape_interval: 100ms, evaluation_interval: 100ms}}\nrule_files: ['{RULES}']\n"
             f"scrape_configs:\n- job_name: node\n  static_configs: [{{targets: ['127.0.0.1:{scraped}']}}]\n"
         )
         words = command(
@@ -292,7 +292,7 @@ def test_prometheus_alarms_of_a_plc_that_died_after_its_backup(cli: Cli, place: 
 
 
 def asked(port: int, query: str, at_least: int) -> list[tuple[dict[str, str], str]]:
-    """The answer to a query, when there is one: Prometheus scrapes and judges once a second."""
+    """The answer to a query, when there is one: Prometheus scrapes and judges ten times a second."""
     url = f"http://127.0.0.1:{port}/api/v1/query?{urllib.parse.urlencode({'query': query})}"
     deadline = time.monotonic() + PATIENCE_S
     while True:
@@ -300,4 +300,4 @@ def asked(port: int, query: str, at_least: int) -> list[tuple[dict[str, str], st
         if len(result) >= at_least:
             return [(each["metric"], each["value"][1]) for each in result]
         assert time.monotonic() < deadline, query
-        threading.Event().wait(0.2)
+        threading.Event().wait(0.05)
