@@ -38,13 +38,13 @@ class Timing(NamedTuple):
 @contextlib.contextmanager
 def simulator(*options: str) -> Iterator[str]:
     """A simulator as long as the context lasts; gives its target."""
-    with doors(*options) as targets:
+    with simulators(*options) as targets:
         yield targets[0]
 
 
 @contextlib.contextmanager
-def doors(*options: str) -> Iterator[list[str]]:
-    """A simulator with many doors as long as the context lasts; gives their targets."""
+def simulators(*options: str) -> Iterator[list[str]]:
+    """A simulator with many TCP ports as long as the context lasts; gives their targets."""
     command = pinned(0, [sys.executable, "-m", "fatektool", "simulate", "--json", *options])
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         try:

@@ -1,7 +1,7 @@
-"""1 to 1000 PLCs behind as many TCP doors, 20 ms to answer: time and memory of a backup of all, as a curve.
+"""1 to 1000 PLCs on as many TCP ports, 20 ms to answer: time and memory of a backup of all, as a curve.
 
 The bound is the lines' own time: exchanges x time to answer x rounds of so many lines at once. Beside it
-stands a bare loop, which sends the requests for the pages from as many threads and looks at nothing. A row
+is a bare loop, which sends the requests for the pages from as many threads and looks at nothing. A row
 with fewer PLCs than lines has one round: what it shows is the way into a connection and out of a file. Memory
 is the peak of the tool's process, with the documents that ``--json`` keeps to its end; *KB a PLC* is what a
 row has beyond the first one. Then ``fleet status`` for all of them, the whole process, without ``--json``.
@@ -29,7 +29,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from bare_loop import loop
-from common import doors, pinned
+from common import pinned, simulators
 from exchanges import reading
 
 WORDS = 8192
@@ -116,7 +116,7 @@ def row(plcs: int, jobs: int, first_mb: float | None) -> tuple[float, float]:
             share = plcs // PROCESSES + (number < plcs % PROCESSES)
             options = ["--tcp", "127.0.0.1:0"] * share
             pace = ["--scan-ms", str(SCAN_MS), "--ladder-words", str(WORDS)]
-            targets += stack.enter_context(doors(*options, *pace))
+            targets += stack.enter_context(simulators(*options, *pace))
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         bare_s = run_bare(targets, jobs)
         backup = run_tool(targets, jobs, folder, "backup", "--dir", str(folder), "--single-pass", "--json")
@@ -124,7 +124,7 @@ def row(plcs: int, jobs: int, first_mb: float | None) -> tuple[float, float]:
         clients = resource.getrusage(resource.RUSAGE_CHILDREN)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     served = bare_s + backup.seconds + status.seconds
-    simulators = (after.ru_utime + after.ru_stime - clients.ru_utime - clients.ru_stime) / served
+    their_cpu = (after.ru_utime + after.ru_stime - clients.ru_utime - clients.ru_stime) / served
     ratio = backup.seconds / max(bound, bare_s)
     beyond = "" if first_mb is None else f" {1024 * (backup.mb - first_mb) / (plcs - 1):5.0f} KB a PLC"
     print(
@@ -132,7 +132,7 @@ def row(plcs: int, jobs: int, first_mb: float | None) -> tuple[float, float]:
         f"tool {backup.seconds:5.1f} s  to bound {backup.seconds / bound:.3f}  "
         f"to bare {backup.seconds / bare_s:.3f}  {1000 * backup.seconds / plcs:6.0f} ms a PLC, "
         f"{1000 * backup.cpu_s / plcs:4.0f} of the CPU  {backup.mb:3.0f} MB{beyond:<16}  "
-        f"status {status.seconds:5.2f} s {status.mb:3.0f} MB  simulators {simulators:.2f}",
+        f"status {status.seconds:5.2f} s {status.mb:3.0f} MB  simulators {their_cpu:.2f}",
         flush=True,
     )
     return ratio, backup.mb

@@ -181,8 +181,8 @@ def answer(question: str, place: Path) -> None:
 def ask(question: str, place: Path) -> str:
     """A line on one question, to the tool and to git."""
     command = pinned(1, [sys.executable, __file__, "ask", question, str(place)])
-    told = json.loads(subprocess.run(command, stdout=subprocess.PIPE, check=True).stdout)
-    line = f"{question:<26} {told['seconds']:7.2f} s  {told['mb']:4.0f} MB  {told['found']!s:<20}"
+    asked = json.loads(subprocess.run(command, stdout=subprocess.PIPE, check=True).stdout)
+    line = f"{question:<26} {asked['seconds']:7.2f} s  {asked['mb']:4.0f} MB  {asked['found']!s:<20}"
     words = GIT.get(question)
     if words is None or shutil.which("git") is None:
         return line
@@ -191,7 +191,7 @@ def ask(question: str, place: Path) -> str:
         pinned(1, ["/usr/bin/env", "git", "-C", str(place), *words]), stdout=subprocess.DEVNULL, check=True
     )
     git_s = time.perf_counter() - began
-    return f"{line} git {git_s:6.2f} s  ratio {told['seconds'] / git_s:5.2f}"
+    return f"{line} git {git_s:6.2f} s  ratio {asked['seconds'] / git_s:5.2f}"
 
 
 def size_of(place: Path) -> str:

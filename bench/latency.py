@@ -2,7 +2,7 @@
 
 A USB adapter hands on received bytes when a packet is full or when its timer runs out, after 16 ms unless
 somebody says otherwise. ``--low-latency`` has the driver say 1 ms. A pty has no such driver, so the simulated
-adapter (``simulate --latency-timer``) does what a real one would be told:
+adapter (``simulate --latency-timer``) does what a real one would do:
 
     off     --no-low-latency   steps of 16 ms
     on      --low-latency      steps of 1 ms
@@ -39,7 +39,7 @@ ADAPTERS = {"off": 16, "on": 1, "none": 0}
 WORDS = {9600: 1024, 38400: 2048, 115200: 8192}
 SCAN_MS = 5
 EXCHANGES = 60
-"""A job is done again until so many were timed: where a tick falls is chance."""
+"""A job is done again until so many were timed: the time of a tick is chance."""
 
 
 class Job(NamedTuple):

@@ -135,7 +135,7 @@ class Against(NamedTuple):
     writes: Gaps
     plain: Gaps
 
-    def tell(self, name: str) -> bool:
+    def show(self, name: str) -> bool:
         """Print a line; False if a plan costs too much."""
         print(f"{name:<34} reads {self.reads}; writes {self.writes}; gaps of 16 {self.plain}")
         return max(self.reads.most, self.writes.most) <= MOST_GAP
@@ -205,8 +205,8 @@ def main() -> int:
     kept = True
     for protocol in PROTOCOLS:
         name = protocol.codec.name
-        kept &= against_everything(protocol).tell(f"{name}, {SETS} sets")
-        kept &= against_table(protocol).tell(f"{name}, {LARGE_SETS} large sets of R")
+        kept &= against_everything(protocol).show(f"{name}, {SETS} sets")
+        kept &= against_table(protocol).show(f"{name}, {LARGE_SETS} large sets of R")
     print("within it" if kept else "NOT within it")
     return 0 if kept else 1
 

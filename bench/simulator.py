@@ -1,7 +1,7 @@
-"""The simulator's own capacity: other figures stand on it, so it must be the bottleneck of none of them.
+"""The simulator's own capacity: other figures depend on it, so it must be the bottleneck of none of them.
 
 *Exchanges*: so many clients ask as fast as they can, each with one request on its way; beside the simulator
-stands a bare responder, which sends a constant answer for whatever it receives, asked by the same clients.
+is a bare responder, which sends a constant answer for whatever it receives, asked by the same clients.
 *us* is how long the simulator's process had the CPU, as the system counts it, for one exchange.
 
 *Pace*: requests written all at once to a pty at a baud rate, until their last answer, against the bytes on
@@ -43,7 +43,7 @@ _BITS = 10
 
 
 class Simulator(NamedTuple):
-    """One at work: where its doors are, and the process."""
+    """One at work: its targets, and the process."""
 
     targets: list[str]
     pid: int
@@ -129,7 +129,7 @@ class Client:
         os.write(self.descriptor, self.requests[self.asked % len(self.requests)])
         self.asked += 1
 
-    def hear(self) -> bool:
+    def receive(self) -> bool:
         """Take what has come; True if the answer is whole."""
         self.missing -= len(os.read(self.descriptor, self.missing))
         return not self.missing
@@ -152,7 +152,7 @@ def ask_for(clients: Sequence[Client], more: Callable[[int, float], bool]) -> tu
     while waiting:
         for key, _ in watched.select() if len(clients) > 1 else [(watched.get_key(clients[0].descriptor), 0)]:
             client = key.data
-            if client.hear():
+            if client.receive():
                 done += 1
                 if more(done, time.perf_counter() - began):
                     client.ask()
@@ -186,8 +186,10 @@ def exchanges(question: Question, clients: int, seconds: float, *options: str, o
         return took < seconds
 
     with tempfile.TemporaryDirectory() as folder:
-        door = ["--pty", f"{folder}/plc"] if on_pty else ["--tcp", "127.0.0.1:0"]
-        with started(*door, "--protocol", question.protocol, "--ladder-words", "8192", *options) as simulator:
+        listener = ["--pty", f"{folder}/plc"] if on_pty else ["--tcp", "127.0.0.1:0"]
+        with started(
+            *listener, "--protocol", question.protocol, "--ladder-words", "8192", *options
+        ) as simulator:
             before = simulator.cpu_s()
             done, took = run_clients(simulator.targets * clients, question, more)
             cpu_us = (simulator.cpu_s() - before) / done * 1e6
@@ -209,8 +211,8 @@ def pace(baud: int, lines: int, seconds: float) -> tuple[float, float]:
     at_once = Question(PAGES.name, PAGES.protocol, [requests], count * PAGES.answer_bytes)
     ideal = (len(PAGES.requests[0]) + at_once.answer_bytes) * _BITS / baud
     with tempfile.TemporaryDirectory() as folder:
-        doors = [word for number in range(lines) for word in ("--pty", f"{folder}/{number}")]
-        with started(*doors, "--baud", str(baud), "--ladder-words", "8192") as simulator:
+        listeners = [word for number in range(lines) for word in ("--pty", f"{folder}/{number}")]
+        with started(*listeners, "--baud", str(baud), "--ladder-words", "8192") as simulator:
             before = simulator.cpu_s()
             _, took = run_clients(simulator.targets, at_once, lambda _done, _took: False)
             cpu_s = simulator.cpu_s() - before
@@ -262,9 +264,9 @@ def main() -> None:
     sizes = ["--ladder-words", str(LARGEST)]
     share("TCP, 1025 pages", ["--tcp", "127.0.0.1:0", *sizes])
     with tempfile.TemporaryDirectory() as folder:
-        door = ["--pty", f"{folder}/plc"]
+        listener = ["--pty", f"{folder}/plc"]
         for baud, words in ((115200, 13184), (921600, LARGEST)):
-            options = [*door, "--baud", str(baud), "--ladder-words", str(words)]
+            options = [*listener, "--baud", str(baud), "--ladder-words", str(words)]
             share(f"{baud} baud, {words} words", options, "--baud", str(baud))
 
 

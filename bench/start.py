@@ -61,15 +61,15 @@ def whole(*command: str) -> float:
     return time.perf_counter() - began
 
 
-def first_byte(door: socket.socket, *command: str) -> float:
-    """Seconds from the start of a process to the first byte that it sends to the door.
+def first_byte(server: socket.socket, *command: str) -> float:
+    """Seconds from the start of a process to the first byte that it sends.
 
-    It gets answers, and so ends as always: a PLC that stands, and one that will not tell more (53).
+    It gets answers, and so ends as always: a PLC in STOP, and one that refuses 53.
     """
-    words = [*command, "-p", target_of(door)]
+    words = [*command, "-p", target_of(server)]
     began = time.perf_counter()
     with subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL):
-        came_in, _ = door.accept()
+        came_in, _ = server.accept()
         with came_in:
             request = came_in.recv(1)
             took = time.perf_counter() - began
@@ -87,9 +87,9 @@ def answer(code: bytes) -> bytes:
     return b"%b%02X\x03" % (body, sum(body) & 0xFF)
 
 
-def target_of(door: socket.socket) -> str:
+def target_of(server: socket.socket) -> str:
     """How the tool names it."""
-    return f"tcp://127.0.0.1:{door.getsockname()[1]}"
+    return f"tcp://127.0.0.1:{server.getsockname()[1]}"
 
 
 def modules(words: list[str]) -> int:
@@ -99,7 +99,7 @@ def modules(words: list[str]) -> int:
     return int(done.stderr.split()[-1])
 
 
-def starts(target: str, door: socket.socket) -> list[Start]:
+def starts(target: str, server: socket.socket) -> list[Start]:
     """All that is compared; the first is what the others are compared with."""
     bare = [sys.executable, "-c", "import click"]
     count = [sys.executable, "-c", "import click, sys; print(len(sys.modules))"]
@@ -116,7 +116,7 @@ def starts(target: str, door: socket.socket) -> list[Start]:
         for way, tool in ways.items():
             found.append(Start(name, way, loaded, partial(whole, *tool, *words)))
     for way, tool in ways.items():
-        found.append(Start("status, first byte", way, loaded, partial(first_byte, door, *tool, "status")))
+        found.append(Start("status, first byte", way, loaded, partial(first_byte, server, *tool, "status")))
     return found
 
 
@@ -136,11 +136,11 @@ def main() -> int:
     with (
         tempfile.TemporaryDirectory() as folder,
         simulator("--tcp", "127.0.0.1:0") as target,
-        socket.create_server(("127.0.0.1", 0)) as door,
+        socket.create_server(("127.0.0.1", 0)) as server,
     ):
         os.environ["PYTHONPYCACHEPREFIX"] = folder
         os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
-        found = starts(target, door)
+        found = starts(target, server)
         for start in found[1:]:  # a first run leaves its bytecode, and the lock files
             start.seconds()
         took: list[list[float]] = [[] for _ in found]

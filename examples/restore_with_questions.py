@@ -1,4 +1,4 @@
-"""Restore a backup with a question of your own, and tell what the errors say.
+"""Restore a backup with a question of your own, and show what the errors say.
 
 Usage: python restore_with_questions.py TARGET FILE
 """

@@ -24,7 +24,7 @@ def read_r0(address: tuple[str, int]) -> int | None:
 
 
 def address_of(server: Server) -> tuple[str, int]:
-    """A new TCP door of the simulator."""
+    """A new TCP port of the simulator."""
     host, _, port = server.open_tcp().address.removeprefix("tcp://").rpartition(":")
     return host, int(port)
 

@@ -91,7 +91,7 @@ class Plc:
     def is_alive(self) -> bool:
         """True if the PLC answers: one request that changes nothing, with the link's time-out and retries.
 
-        A refusal is an answer too. False where nothing usable is heard, and when the line is closed.
+        A refusal is an answer too. False where no usable answer comes, and when the line is closed.
         """
         if not self._open:
             return False
@@ -190,7 +190,7 @@ class Plc:
             except PlcRefused as error:
                 raise PlcError(
                     f"the PLC acknowledged {word}, and its mode cannot be read back: {error.message}",
-                    hint="look at the PLC: its RUN lamp tells",
+                    hint="look at the RUN lamp of the PLC",
                 ) from error
             if flags.running == run:
                 return

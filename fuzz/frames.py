@@ -83,9 +83,9 @@ def look_at(
     for frame in good:
         _say(codec, frame)
     for role in (Role.EITHER, Role.REQUEST, Role.ANSWER):
-        told = list(new_explainer(codec.name).explain(stream, role))
-        assert b"".join(part.raw for part in told) == stream
-        assert all(b"".join(field.raw for field in part.fields) == part.raw for part in told)
+        explained = list(new_explainer(codec.name).explain(stream, role))
+        assert b"".join(part.raw for part in explained) == stream
+        assert all(b"".join(field.raw for field in part.fields) == part.raw for part in explained)
 
 
 def _say(codec: FaconCodec | MseriesCodec, frame: Frame) -> None:

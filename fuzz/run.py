@@ -48,14 +48,14 @@ def fuzz(target: str, seconds: int, found: Path, crashes: Path) -> int:
         errors="replace",
         check=False,
     )
-    told = done.stdout + done.stderr
-    tried = re.search(r"stat::number_of_executed_units: (\d+)", told)
-    reached = re.findall(r"cov: (\d+)", told)
+    printed = done.stdout + done.stderr
+    tried = re.search(r"stat::number_of_executed_units: (\d+)", printed)
+    reached = re.findall(r"cov: (\d+)", printed)
     count = int(tried[1]) if tried else 0
     state = "ok" if done.returncode == 0 else "BROKEN"
     print(f"{target:<16} {count:>10} inputs in {seconds} s, {reached[-1] if reached else 0} places  {state}")
     if done.returncode or not count:
-        print(told[-4000:])
+        print(printed[-4000:])
         return done.returncode or 1
     return 0
 

@@ -1,4 +1,4 @@
-"""Snapshot files: read, and either to be put back as they stand or refused in one plain line."""
+"""Snapshot files: read, and either written back unchanged or refused in one plain line."""
 
 from __future__ import annotations
 

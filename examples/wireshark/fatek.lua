@@ -164,7 +164,7 @@ function Text:element()
   return { symbol = symbol, address = tonumber(address), bits = kind.bits, stride = kind.stride }, range
 end
 
-function Text:binary(size) -- hex digits as the bytes that they stand for, in a pane of their own
+function Text:binary(size) -- hex digits as the bytes that they are, in a pane of their own
   local range = self:take(2 * size)
   local text = range:raw()
   if not text:match("^[0-9A-F]+$") then error("expected hex digits", 0) end
@@ -465,7 +465,7 @@ local function add_checksum(tree, range, got, expected, field, digits)
 end
 
 -- FACON frames: STX, station, command, data, LRC, ETX -----------------------------------------------------
--- STX begins a frame afresh wherever it stands, so that a good frame behind a broken one is seen.
+-- STX begins a frame afresh wherever it is, so that a good frame behind a broken one is seen.
 
 local function add_facon_frame(tvb, at, stop, pinfo, tree, context)
   local range = tvb(at, stop - at)

@@ -145,7 +145,7 @@ def _fault(error: Exception) -> FatektoolError:
 def _output_lost(error: OSError) -> FatektoolError:
     return DataError(
         f"standard output cannot be written: {error.strerror}",
-        hint="make room or name another place, and run it again",
+        hint="free some space or name another place, and run it again",
     )
 
 

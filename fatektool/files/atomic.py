@@ -209,7 +209,9 @@ def file_error(what: str, path: Path, error: OSError | ValueError) -> FatektoolE
     message = f"cannot {what} {path}: {reason}"
     number = getattr(error, "errno", None)
     if number in {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}:
-        return DataError(message, hint="make room and run it again; the file is as it was", file=str(path))
+        return DataError(
+            message, hint="free some space and run it again; the file is as it was", file=str(path)
+        )
     if number == errno.EIO:
         return DataError(message, hint="check the disk", file=str(path))
     return UsageError(message, hint="check the name and its rights", file=str(path))

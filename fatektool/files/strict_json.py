@@ -1,6 +1,6 @@
 """JSON that says one thing: no key twice in an object, no NaN and no Infinity.
 
-What reads a key that stands twice takes the last one, what looks with other eyes the first: a file that two
+Of a key that is there twice some readers take the last, others the first: a file that two
 readers understand in two ways is refused.
 """
 
@@ -27,7 +27,7 @@ def read_json(data: bytes) -> Any:
 def _once_each(items: list[tuple[str, Any]]) -> dict[str, Any]:
     found = dict(items)
     if len(found) != len(items):
-        raise ValueError("a key stands twice")
+        raise ValueError("a key is there twice")
     return found
 
 

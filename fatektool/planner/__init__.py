@@ -9,8 +9,8 @@ every protocol.
     elements ─> lines of places ─> edges between places ─> the least path ─> requests ─> answers ─> values
                  atoms.py           edges.py                paths.py          reads.py, writes.py  atoms.py
 
-A set of elements falls into *atoms*: discretes, and registers of 16 bits. The atoms of one symbol lie on a
-line, the lines one behind the other, and a plan is a path over them:
+A set of elements is divided into *atoms*: discretes, and registers of 16 bits. The atoms of one symbol are
+on a line, the lines one behind the other, and a plan is a path over them:
 
 - a **run** of registers (46, 47), of discretes (44, 45), or of discretes packed in words (46, 47), in a
   request of its own; a run of a read goes on over a gap where that costs less than another request;
@@ -20,7 +20,7 @@ Where a protocol has no mixed requests, as Modbus, a plan has runs only; where i
 elements (``Codec.neighbourhood``), each side is planned for itself. What one request holds is the codec's
 too.
 
-An element of 32 bits or a packed word lies within one run or item, so that its parts are of one scan
+An element of 32 bits or a packed word is within one run or item, so that its parts are of one scan
 [E:one-scan], in reads and in writes; a write writes each atom once. Of all plans that keep to this, the
 result is one that costs least: ``edges.py`` says why no other needs to be looked at, ``paths.py`` why the
 least of them is found, and the tests compare it with every plan there is.

@@ -38,7 +38,7 @@ def atoms_of(element: Element) -> list[Atom]:
 
 
 def _span(element: Element) -> tuple[str, int, int]:
-    """The line that an element lies on, its first and last address there."""
+    """The line of an element, its first and last address there."""
     symbol, address, bits = element.symbol, element.address, element.kind.bits
     if bits > 1 and symbol.startswith(("W", "DW")):
         return symbol[-1], address, address + bits - 1
@@ -72,19 +72,19 @@ class Line:
         stride: how far apart neighbours are.
         firsts: each span's first address.
         lasts: each span's last address.
-        floor: no request goes below this address,
+        lowest: no request goes below this address,
         bound: nor to this one or past it.
-        exact: all between floor and bound is wanted.
+        exact: all between lowest and bound is wanted.
         start: the node of the first span.
         ends: the places behind the stretches of neighbours, behind which there is a gap.
-        uneven: registers and pairs of them stand side by side.
+        uneven: registers and pairs of them are side by side.
     """
 
     symbol: str
     stride: int
     firsts: list[int]
     lasts: list[int]
-    floor: int
+    lowest: int
     bound: int
     exact: bool
     start: int
@@ -150,7 +150,7 @@ def lines_of(elements: Iterable[Element | Stretch], limits: Mapping[str, int] | 
                     kind.stride,
                     firsts[begin:end],
                     lasts[begin:end],
-                    floor=0 if within else firsts[begin],
+                    lowest=0 if within else firsts[begin],
                     bound=max(limit, past) if within else past,
                     exact=not within,
                     start=lines[-1].start + len(lines[-1]) if lines else 0,
@@ -190,7 +190,7 @@ def _stretch_ends(firsts: list[int], lasts: list[int], stride: int) -> list[int]
 class Values:
     """Answers to planned reads, and the values of the elements in them.
 
-    Two answers may tell of one atom. An element's value is that of the last answer that has it whole, so that
+    Two answers may hold one atom. An element's value is that of the last answer that has it whole, so that
     its parts are of one scan [E:one-scan].
     """
 
@@ -199,7 +199,7 @@ class Values:
         self._atoms: dict[Atom, dict[int, int]] = {}  # by answer, the last one last
 
     def take(self, request: Request[Any], answer: tuple[Any, ...]) -> None:
-        """Keep what a request's answer tells."""
+        """Keep the values of a request's answer."""
         self._answers += 1
         if isinstance(request, ReadMixed):
             for element, value in zip(request.elements, answer, strict=True):
@@ -229,12 +229,12 @@ class Values:
         """The value of an element, unsigned; a discrete is 0 or 1.
 
         Raises:
-            KeyError: no answer told of it.
+            KeyError: no answer held it.
         """
         symbol, first, last = _span(element)
         if first == last:
-            told = self._atoms[symbol, first]
-            return told[next(reversed(told))]
+            values = self._atoms[symbol, first]
+            return values[next(reversed(values))]
         answers = self._answers_with(element)
         if not answers:
             raise KeyError(element)

@@ -1,4 +1,4 @@
-"""What the parts of a request cost on the wire, as the codec tells."""
+"""What the parts of a request cost on the wire, by the codec's own figures."""
 
 from __future__ import annotations
 

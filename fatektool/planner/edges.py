@@ -1,6 +1,6 @@
 """The ways to cover the elements of a line, as edges between its places.
 
-That every element lies within one run or item, and that an edge leads from each place to every place that one
+That every element is within one run or item, and that an edge leads from each place to every place that one
 can reach, would be enough for the least path. Exchange arguments leave out most edges and keep a least path:
 
 - A run of registers ends behind a stretch of neighbours or at its limit. If it ended within the stretch short
@@ -10,7 +10,7 @@ can reach, would be enough for the least path. Exchange arguments leave out most
   can reach (neither 48 nor 49 holds more than a run), or where they are not alike.
 - A packed run begins at the last multiple of 8 that it can, and ends where the 8 discretes behind it are not
   wanted, or at its limit. Otherwise it could take over a word, and what begins behind it would begin a word
-  later, if no wanted word lies across the place where that one ends.
+  later, if no wanted word is across the place where that one ends.
 - Discretes are read as such (44, a byte each) only as far as a packed run costs more, or cannot reach.
 - A discrete is an item of its own only where it is alone among its 8: two cost more than their word.
 
@@ -133,9 +133,9 @@ class Edges:
         line = self._lines[number]
         symbol = f"W{line.symbol}"
         first = line.firsts[place] // STEP * STEP
-        room = (line.bound - first) // WORD
+        space = (line.bound - first) // WORD
         most = self._costs.most(symbol)
-        limit = first + min(room, most) * WORD
+        limit = first + min(space, most) * WORD
         cuts = self._cuts(number, first % WORD)
         for at in range(bisect_left(cuts, (line.lasts[place] + 1, 0)), len(cuts)):
             end, to = cuts[at]
@@ -145,10 +145,10 @@ class Edges:
         to = line.place_past(limit, place)
         if to > place:
             yield self._run(line, to, symbol, first, -(-(line.lasts[to - 1] + 1 - first) // WORD))
-        if room < most and limit + STEP <= line.bound and first >= STEP:
+        if space < most and limit + STEP <= line.bound and first >= STEP:
             beyond = line.place_past(limit + STEP, place)
             if beyond > to:  # what a run reaches that begins 8 earlier, and ends where the PLC does
-                yield self._run(line, beyond, symbol, first - STEP, room + 1)
+                yield self._run(line, beyond, symbol, first - STEP, space + 1)
 
     def _discrete_runs(self, line: Line, place: int) -> Iterator[Edge]:
         symbol, packed = line.symbol, f"W{line.symbol}"

@@ -7,7 +7,7 @@ An edge costs its own bytes, and so many mixed words. All mixed words of a path 
 - With a price on each word, no path within the limit costs less than the shortest one at that price less the
   price of all words allowed: a bound from below. The path found is a bound from above.
 - The best price for a limit is found by walking the corners of (words, cost): a chord between two of them is
-  the next price, until no path lies below the chord.
+  the next price, until no path is below the chord.
 - A number of requests whose bound is no less than the best path is done. For the others, from node to node,
   all (words, cost) are kept that are not dominated and that could, with the bound of their rest, still beat
   the best path. Nothing better is ever dropped. The same with a few labels a node is done before, but only to
@@ -44,7 +44,7 @@ class Edge(NamedTuple):
         to: the node it leads to, farther on than the one it comes from.
         cost: its own bytes.
         words: mixed words.
-        piece: what it stands for: a run, or mixed items.
+        piece: what it means: a run, or mixed items.
     """
 
     to: int
@@ -201,10 +201,10 @@ class _Search:
                 all_seen = False
                 kept = nsmallest(_FEW, kept, key=lambda pair: pair[1].cost + price * pair[0])
             for words, label in kept:
-                room = slack - label.cost - price * words
+                space = slack - label.cost - price * words
                 for edge in edges:
                     to, cost, more, _ = edge
-                    if cost + price * more + rest[to] >= room or words + more > most:
+                    if cost + price * more + rest[to] >= space or words + more > most:
                         continue
                     known = labels[to].get(words + more)
                     if known is None or label.cost + cost < known.cost:

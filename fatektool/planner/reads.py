@@ -84,13 +84,13 @@ def _read(run: Run) -> Request[Any]:
 
 
 def packed(elements: Iterable[Element], capacity: int) -> list[list[Element]]:
-    """Mixed items in as few requests as their words allow: the double ones first, so that no room is lost."""
+    """Mixed items in as few requests as their words allow: the double ones first, so that none is lost."""
     requests: list[list[Element]] = []
-    room = 0
+    space = 0
     for element in sorted(elements, key=lambda element: -element.kind.words):
-        if room < element.kind.words:
+        if space < element.kind.words:
             requests.append([])
-            room = capacity
+            space = capacity
         requests[-1].append(element)
-        room -= element.kind.words
+        space -= element.kind.words
     return requests

@@ -1,6 +1,6 @@
 """What the paper allows in a row of a communication table, and the result code where it does not.
 
-FBs link paper: the ranges stand with the operand SR of each mode, the codes with its operand WR::
+FBs link paper: the ranges are at the operand SR of each mode, the codes at its operand WR::
 
     2 length   3 command   4 data type   5 reference   6 types that do not go together   A no answer
 

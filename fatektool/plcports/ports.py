@@ -15,7 +15,7 @@ FBs link paper, sections 13.1.2 (interface signals) and 13.2 (R4047)::
     R4047 = 55xxH   b1 to b4: the port is a Modbus RTU slave, else FATEK
     R4047 = 56xxH   two bits a port from b0 on: 0, 1 FATEK, 2 Modbus RTU, 3 Modbus ASCII; from OS 4.24 on
 
-The bits of the communication parameters stand in another chapter, which this paper refers to: they are shown
+The bits of the communication parameters are in another chapter, which this paper refers to: they are shown
 as they are. TX delay is in 0.01 s always. A PLC without D4043 has no other unit than 0.01 s.
 """
 
@@ -64,7 +64,7 @@ class Port:
         number: 1 to 4.
         free: False while an instruction has it.
         finished: the last transaction of the table is done.
-        protocol: what it speaks as a slave.
+        protocol: its protocol as a slave.
         parameters: the register as it is.
         tx_delay_s: between two transactions, in seconds.
         rx_timeout_s: how long it waits for an answer, in seconds.
@@ -88,7 +88,7 @@ class Port:
 
 
 def slave_protocol(r4047: int, port: int, *, two_bits: bool = True) -> str:
-    """What a port speaks as a slave.
+    """The protocol of a port as a slave.
 
     Args:
         r4047: the register.

@@ -108,7 +108,7 @@ class TransactionResult:
 
 @dataclass(frozen=True, slots=True)
 class Operation:
-    """WR+4: where the instruction stands. None for what the mode does not have.
+    """WR+4: the instruction's progress. None for what the mode does not have.
 
     Attributes:
         waiting: another instruction has the port, this one waits for it.
@@ -143,7 +143,7 @@ class InstructionState:
     Attributes:
         words: WR+0 to WR+7 as they are.
         result: of the last transaction. Of MD1 to MD3 only its code holds.
-        operation: where the instruction stands.
+        operation: the instruction's progress.
     """
 
     words: tuple[int, ...]

@@ -6,7 +6,7 @@ FBs link paper, sections 13.1.2 (MD0, MD3) and 13.2.2 (M-BUS)::
     MD0, M-BUS  station  command  length  master type  master reference slave type  slave reference
     MD3         station  command  length  type         reference        reserved    reserved
 
-Of all words but the references (and the reserved ones) the PLC takes the low byte. What stands in the high
+Of all words but the references (and the reserved ones) the PLC takes the low byte. What is in the high
 byte is kept in ``high_bytes``, so that a table goes back as it came.
 """
 

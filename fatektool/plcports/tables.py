@@ -1,4 +1,4 @@
-"""Communication tables: what stands from operand SR on, as words and as rows.
+"""Communication tables: the registers from operand SR on, as words and as rows.
 
 FBs link paper, sections 13.1.2 (CLINK, FUN151) and 13.2.2 (M-BUS, FUN150)::
 
@@ -9,7 +9,7 @@ FBs link paper, sections 13.1.2 (CLINK, FUN151) and 13.2.2 (M-BUS, FUN150)::
     md2   mode   start|end code   length   a byte a word ...     receive, perhaps reply: any protocol
 
 Nothing of a table is lost: high bytes that the PLC does not take, reserved words and codes that no paper
-lists are kept, so that words -> table -> words is the identity. What is wrong with a table, ``faults`` tells.
+lists are kept, so that words -> table -> words is the identity. ``faults`` says what is wrong with a table.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Which PLCs have what the FBs link paper describes, as far as 53 tells.
+"""Which PLCs have what the FBs link paper describes, as far as 53 says.
 
 FBs link paper, section 13.2: Modbus slave types 1 and 3 of M-BUS "OS version 4.22↑"; R4047 = 56xxH, the only
 way to Modbus ASCII, "FBs PLC OS V4.24 or later". All of chapter 13 is of the FBs series, whose OS is 4 or

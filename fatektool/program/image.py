@@ -45,7 +45,7 @@ class Program:
     """A whole program image.
 
     Attributes:
-        ladder_words: the ladder size that the PLC told (53), 1 to 65535.
+        ladder_words: the ladder size that the PLC reports (53), 1 to 65535.
         pages: 128 bytes each, page 0 first; as many as the ladder size asks for, or as ``is_whole`` allows.
 
     Raises:
@@ -89,7 +89,7 @@ class Program:
 
     @property
     def sha256(self) -> str:
-        """The hash by which two people can tell whether they hold the same program."""
+        """The hash by which two people can see whether they hold the same program."""
         return hashlib.sha256(self.data).hexdigest()
 
     def require_header(self, hint: str | None = None) -> None:

@@ -30,7 +30,7 @@ def solve(memories: Sequence[bytes], known: Mapping[int, tuple[int, int]]) -> by
 
     Args:
         memories: enciphered, each from the key's start; the first is the one with known bytes.
-        known: place in the first memory -> the byte that stands there, and how many votes that is worth.
+        known: place in the first memory -> the byte that is there, and how many votes that is worth.
     """
     votes = [_votes(memories, residue) for residue in range(PERIOD)]
     for place, (byte, weight) in known.items():

@@ -44,7 +44,7 @@ _FULL: Final = (15, 16)
 """An element's comment has at most 16 bytes: one of so many may have been cut."""
 _LOOKED_AT: Final = 1000
 _LONGEST: Final = 200
-"""How many texts, and how much of each, are enough to tell by what they look like; all must decode."""
+"""How many texts, and how much of each, are enough to decide by; all must decode."""
 
 
 class Choice(NamedTuple):

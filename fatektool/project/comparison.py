@@ -116,7 +116,7 @@ def trimmed(pages: Sequence[bytes], count: int) -> Sequence[bytes]:
 
 
 def in_order_of(example: Program, program: Program) -> Program:
-    """A program with its bytes in the order of another, where both headers tell theirs."""
+    """A program with its bytes in the order of another, where both headers say theirs."""
     orders = example.header.byte_order, program.header.byte_order
     if None in orders or orders[0] == orders[1]:
         return program

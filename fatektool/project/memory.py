@@ -1,4 +1,4 @@
-"""The memories of a project: the program's image and what lies behind it, out of their cipher.
+"""The memories of a project: the program's image and what follows it, deciphered.
 
 ::
 

@@ -141,7 +141,7 @@ def load_program(path: Path | str, *, encoding: str | None = None) -> ProgramFil
     """Read a program from a file: a backup, or a project of the vendor's program (``.pdw``).
 
     Args:
-        path: the file; its bytes tell which it is.
+        path: the file; its bytes decide which it is.
         encoding: the code page of a project's comments (``cp1250``); None finds it out.
 
     Raises:

@@ -93,7 +93,7 @@ def records(data: bytes) -> Iterator[Record]:
 
 
 def _tail(data: bytes, kind: int, end: int) -> int:
-    """How many bytes stand behind a record's own: what its type has, unless only the other makes sense."""
+    """How many bytes follow a record's own: what its type has, unless only the other makes sense."""
     usual = 0 if kind == _BARE else 2
     only_the_other = not _is_record(data, end + usual) and _is_record(data, end + 2 - usual)
     return 2 - usual if only_the_other else usual

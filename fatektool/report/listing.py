@@ -59,7 +59,7 @@ def _legend() -> Html:
         "How to read it",
         note(
             "The text is as the vendor's program prints it. What has ~ before it is not its own word: it was "
-            "read from use. What has ?? before it is not known: its words stand there in hex."
+            "read from use. What has ?? before it is not known: its words are shown in hex."
         ),
     )
 

@@ -144,7 +144,7 @@ def _histogram(document: Mapping[str, Any]) -> list[Html]:
 
 
 def _place(buckets: Sequence[Mapping[str, Any]], value: float) -> float | None:
-    """Where a time lies among the columns; None if it is in none of them."""
+    """The column of a time; None if it is in none of them."""
     for number, bucket in enumerate(buckets):
         if bucket["from_ms"] <= value <= bucket["to_ms"]:
             wide = bucket["to_ms"] - bucket["from_ms"]

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 _VOID: Final = frozenset({"meta"})
 _WIDE: Final = 4
-DASH: Final = "–"  # noqa: RUF001  # an en dash is what stands for no value
+DASH: Final = "–"  # noqa: RUF001  # an en dash means no value
 
 
 class Html(str):
@@ -76,7 +76,7 @@ def figure(value: object, shown: str | None = None, unit: str = "") -> Html:
     Args:
         value: as the document has it: a number, a truth, a text, None.
         shown: how it is written; by default the value itself, seven digits of a float, a dash for None.
-        unit: what stands behind it.
+        unit: what follows it.
     """
     if shown is None:
         shown = plain(value)
@@ -128,7 +128,7 @@ def table(
         caption: what it shows.
         head: the columns' names.
         rows: their cells.
-        numeric: the columns that stand at the right.
+        numeric: the columns that are aligned right.
         scroll: in a narrow window the table moves, not the page; by default one of many columns.
     """
     right = set(numeric)

@@ -46,13 +46,13 @@ class Verdict:
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """What stands in the frame.
+    """What is in the frame.
 
     Attributes:
         title: what it is.
         what: of what, from where.
         verdict: what it comes to.
-        facts: names and what stands under them.
+        facts: names and what is under them.
         sections: the rest, each made by ``section``.
         schema: the document that the figures are from.
         time: when they were read, UTC, RFC 3339.
@@ -109,7 +109,7 @@ def section(heading: str, *content: object, id_: str | None = None) -> Html:
 
 
 def facts(pairs: Iterable[tuple[str, object]]) -> Html:
-    """Names and what stands under them, side by side; a long one has a line of its own."""
+    """Names and what is under them, side by side; a long one has a line of its own."""
     return tag(
         "dl",
         *(

@@ -65,7 +65,7 @@ def _box() -> str:
 
 
 def _marked(x: int, y: int, said: str, *, lone: bool = False) -> Html:
-    """A cell that stands out: filled with a cross in it, or a slash alone."""
+    """A marked cell: filled with a cross in it, or a slash alone."""
     if lone:
         shape = tag("path", d=f"M{x} {y}{_box()}M{x} {y + _CELL}l{_CELL} -{_CELL}")
         return tag("g", tag("title", said), shape, class_="lone")

@@ -76,7 +76,7 @@ def _report(
         programs: the first, and the second where it is at hand.
         sides: what the two are called.
         names: title, what of, and when.
-        facts: what stands at the top, before the sizes.
+        facts: what is at the top, before the sizes.
     """
     title, what, time = names
     sizes = document["a_ladder_words"], document["b_ladder_words"]

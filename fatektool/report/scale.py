@@ -56,8 +56,8 @@ def ends(values: Sequence[float], *, zero: bool = False) -> tuple[float, float]:
     if zero:
         low = min(low, 0.0)
     if high / 2 - low / 2 < _SMALLEST:
-        room = max(1.0, abs(low) / 10)
-        return (0.0, 1.0) if zero else (max(low - room, -_LARGEST), min(high + room, _LARGEST))
+        space = max(1.0, abs(low) / 10)
+        return (0.0, 1.0) if zero else (max(low - space, -_LARGEST), min(high + space, _LARGEST))
     return low, high
 
 

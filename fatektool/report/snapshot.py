@@ -56,14 +56,14 @@ def snapshot_report(document: Mapping[str, Any]) -> str:
 
 
 def bounded(count: int, which: str) -> Html | str:
-    """A remark where there are more values than a table has room for."""
+    """A remark where there are more values than a table holds."""
     if count <= MOST_ROWS:
         return ""
     return note(f"{MOST_ROWS} values of {count} are shown, {which}; the JSON document (--json) has all.")
 
 
 def mode_of(document: Mapping[str, Any] | None) -> str:
-    """RUN or STOP, as a document says; a dash for none, and where the protocol does not tell."""
+    """RUN or STOP, as a document says; a dash for none, and where the protocol does not say."""
     if document is None or document["running"] is None:
         return DASH
     return "RUN" if document["running"] else "STOP"

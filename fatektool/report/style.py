@@ -1,8 +1,8 @@
 """The style sheet of every report: light, dark, on paper, in a narrow window.
 
 Each scheme is a set of colours; everything else names them. What a colour says a mark, a word or a pattern
-says too. Text stands off its ground by 4.5 to 1 or more, lines by 3 to 1 (WCAG 2.2, AA). Paper is always
-light, and as printers leave grounds out, nothing there rests on a ground.
+says too. The contrast of text is 4.5 to 1 or more, that of lines 3 to 1 (WCAG 2.2, AA). Paper is always
+light, and as printers leave backgrounds out, nothing there depends on one.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Charts as inline SVG: columns, a line over time, a timing diagram of discretes.
 
-Every chart is one image for a screen reader, with a title and a description of its own; its figures stand in
+Every chart is one image for a screen reader, with a title and a description of its own; its figures are in
 a table beside it. Colours come from the style sheet, so that a chart is right on a dark screen and on paper.
 
 A chart is ``WIDTH`` wide and scales with the window::
@@ -50,7 +50,7 @@ class Columns:
         names: under them.
         values: their heights, from 0.
         axis: what the names are, with unit.
-        marks: upright lines: a place in columns (2.5 is the middle of the third), and what stands there.
+        marks: upright lines: a place in columns (2.5 is the middle of the third), and what is there.
     """
 
     names: Sequence[str]
@@ -82,7 +82,7 @@ def canvas(name: str, title: str, said: str, height: float, content: Html) -> Ht
 
 
 def label(x: float, y: float, text: object, *, anchor: str = "start", strong: bool = False) -> Html:
-    """A text; ``anchor`` is what of it stands at x: start, middle, end."""
+    """A text; ``anchor`` is what of it is at x: start, middle, end."""
     return tag(
         "text", text, x=_short(x), y=_short(y), text_anchor=anchor, class_="strong" if strong else None
     )
@@ -218,7 +218,7 @@ def _runs(points: Sequence[Point]) -> Iterator[list[tuple[float, float]]]:
 
 
 def _path(points: Sequence[Point], across: Scale, up: Scale) -> str:
-    """From point to point; one that stands alone is a dot, by the round end of a line of no length."""
+    """From point to point; a single one is a dot, by the round end of a line of no length."""
     found = []
     for run in _runs(points):
         places = [f"{_short(across.at(x))} {_short(up.at(y))}" for x, y in run]

@@ -138,7 +138,7 @@ def _addresses(tables: Mapping[str, bytearray]) -> dict[str, list[int]]:
 
 
 def _once_each(items: list[tuple[str, Any]]) -> dict[str, Any]:
-    """An object; one in which a key stands twice says two things."""
+    """An object; one in which a key is there twice says two things."""
     found = dict(items)
     if len(found) != len(items):
         raise ValueError

@@ -260,7 +260,7 @@ WHOLE = backup(program(1)).to_bytes()
         (WHOLE.decode().encode("utf-16"), "text in UTF-16, expected UTF-8"),
         (b"\xef\xbb\xbf\xff" + WHOLE, "byte 3 is FF"),
         (WHOLE + WHOLE, "Extra data"),
-        (WHOLE.replace(b'"passes": 2', b'"passes": 2, "passes": 2'), "a key stands twice"),
+        (WHOLE.replace(b'"passes": 2', b'"passes": 2, "passes": 2'), "a key is there twice"),
         (WHOLE.replace(b'"passes": 2', b'"passes": NaN'), "NaN is no JSON"),
         (WHOLE.replace(b'"passes": 2', b'"passes": -Infinity'), "-Infinity is no JSON"),
         (WHOLE.replace(b'"passes": 2', b'"passes": 1e999'), "passes: expected a whole number"),

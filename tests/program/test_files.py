@@ -134,8 +134,8 @@ def test_a_read_only_folder_by_what_the_system_says(tmp_path: Path, monkeypatch:
 @pytest.mark.parametrize(
     "failure",
     [
-        (OSError(errno.ENOSPC, "No space left on device"), DataError, "No space left.*make room"),
-        (OSError(errno.EDQUOT, "Disk quota exceeded"), DataError, "make room"),
+        (OSError(errno.ENOSPC, "No space left on device"), DataError, "No space left.*free some space"),
+        (OSError(errno.EDQUOT, "Disk quota exceeded"), DataError, "free some space"),
         (OSError(errno.EIO, "Input/output error"), DataError, "check the disk"),
         (OSError(errno.EROFS, "Read-only file system"), UsageError, "check the name and its rights"),
         (KeyboardInterrupt(), KeyboardInterrupt, None),
@@ -320,7 +320,7 @@ def small_disk(tmp_path: Path) -> Iterator[Path]:
 def test_a_disk_that_is_really_full(small_disk: Path) -> None:
     path = small_disk / "file"
     path.write_bytes(OLD)
-    with pytest.raises(DataError, match="No space left on device; make room") as caught:
+    with pytest.raises(DataError, match="No space left on device; free some space") as caught:
         write_whole(path, b"x" * 100_000, overwrite=True)
     assert caught.value.exit_code == 5
     assert path.read_bytes() == OLD

@@ -283,7 +283,7 @@ def test_a_backup_and_a_full_disk(door: Door, place: Path, mortals: Mortals, *, 
             assert (life.code, backups(place)) == (0, {"x.json": OLD})
             continue
         assert life.code == 5, life.steps
-        assert "x.json: No space left on device; make room" in one_line(life.err)
+        assert "x.json: No space left on device; free some space" in one_line(life.err)
         assert life.out == ""
         assert backups(place) in (before, {"x.json": OLD})
 
@@ -300,7 +300,7 @@ def test_a_restore_and_a_full_disk(door: Door, place: Path, mortals: Mortals) ->
         assert life.code == 5, life.steps
         error = life.document("error")["error"]
         assert "No space left on device" in error["message"]
-        assert "make room" in error["hint"]
+        assert "free some space" in error["hint"]
         assert door.pages == OLD.pages
 
 
@@ -329,7 +329,7 @@ def test_a_disk_that_is_really_too_small(
         words = [word.replace("x.json", "small/x.json") for word in words]
         life = mortals(*words, "-p", door.target, folder=place, limit=1024 if kind == "limit" else None)
         assert life.code == 5
-        assert "make room" in life.err
+        assert "free some space" in life.err
         assert [path.name for path in small.iterdir()] == (["full"] if kind == "disk" else [])
     finally:
         if mounted:

@@ -59,7 +59,7 @@ class Header:
         filled: True if the rest of page 0 is FF, as the family has it.
         announced_pages: how many pages hold all that it announces; None for no family.
         code_words: code in use, in words (fbs).
-        capacity_words: room for code, in words (fbs).
+        capacity_words: space for code, in words (fbs).
         checksum: of the code (fbs).
         sums: of ``settings``, ``labels`` and ``ror`` (fbs).
     """

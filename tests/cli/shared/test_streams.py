@@ -204,7 +204,9 @@ def test_stdout_on_a_full_disk(press: Press, command: str, *, as_json: bool) -> 
         return  # this computer has none: nothing is printed
     assert done.code == 5
     line = one_line(done.err.splitlines()[-1])
-    assert line.startswith("fatektool: standard output cannot be written: No space left on device; make room")
+    assert line.startswith(
+        "fatektool: standard output cannot be written: No space left on device; free some space"
+    )
 
 
 @pytest.mark.parametrize("words", [["--help"], ["--version"]])
