@@ -1,4 +1,4 @@
-"""Is all of a history whole? Every object by its hash, every stored file by the backup's own rules."""
+"""Check a history: every object by its hash, every stored file as a backup."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Damage:
-    """What does not hold.
+    """Something that is missing, damaged or not valid.
 
     Attributes:
         revision: the newest commit in which it was found, 40 hex digits; None if it is the repository itself.
-        name: the PLC; None if it is none's alone.
+        name: the PLC; None if it does not belong to one PLC.
         message: what is wrong.
     """
 
@@ -40,14 +40,14 @@ class Damage:
 
 @dataclass(frozen=True, slots=True)
 class HistoryCheck:
-    """A history, looked through.
+    """The result of a check.
 
     Attributes:
-        commits: how many.
-        programs: how many stored programs, each version once.
-        names: the PLCs that it holds now.
-        faults: what does not hold; empty if all does.
-        shallow: True if it is a shallow clone, in which older commits are left out.
+        commits: number of commits.
+        programs: number of stored programs, each version counted once.
+        names: the PLCs in the newest commit.
+        faults: what was found; empty if nothing is wrong.
+        shallow: True if it is a shallow clone, in which older commits are missing.
     """
 
     commits: int
@@ -58,22 +58,22 @@ class HistoryCheck:
 
 
 def check(folder: Path, progress: Callable[[str, int, int], None] = lambda *_: None) -> HistoryCheck:
-    """Look a history through, from the newest commit to the first.
+    """Check a history, from the newest commit to the first.
 
     Args:
         folder: the repository.
-        progress: told of each commit.
+        progress: called after each commit with the step, the commits checked, and all commits.
 
     Raises:
-        UsageError: there is no such folder, or it may not be read.
-        DataError: it is no repository at all.
+        UsageError: the folder does not exist or cannot be read.
+        DataError: it is not a repository.
     """
     with Repository(folder) as repository:
         return _Check(repository).run(progress)
 
 
 class _Check:
-    """What was looked at already, and what was found."""
+    """What was checked, and what was found."""
 
     def __init__(self, repository: Repository) -> None:
         self.repository = repository
@@ -96,7 +96,7 @@ class _Check:
         return HistoryCheck(len(commits), self.programs, names, tuple(self.faults), bool(self.repository.cut))
 
     def commits(self) -> list[Commit]:
-        """All commits that can be reached, newest first."""
+        """All commits that the branch leads to, newest first."""
         found: list[Commit] = []
         try:
             tip = self.repository.tip()
@@ -119,14 +119,14 @@ class _Check:
         return found
 
     def tree(self, sha: str) -> list[Item]:
-        """What a tree names; nothing the second time."""
+        """The items of a tree; none the second time."""
         if sha in self.seen:
             return []
         self.seen.add(sha)
         return self.repository.items(sha)
 
     def look(self, commit: Commit, found: list[Item], *, root: bool = False) -> None:
-        """Look at what a tree names, at each object once."""
+        """Check the items of a tree, each object once."""
         for path, mode, raw_sha in found:
             sha = raw_sha.decode()
             if sha in self.seen or S_ISGITLINK(mode):
@@ -142,7 +142,7 @@ class _Check:
                 self.faults.append(Damage(commit.revision, name, error.message))
 
     def file(self, commit: Commit, name: str | None, data: bytes) -> None:
-        """A file; what is no PLC's is somebody else's."""
+        """Check a file; one that is not named as a PLC's is not parsed."""
         if name is not None:
             self.programs += 1
             Backup.parse(data, f"{name}@{commit.revision[:SHORT]}")

@@ -1,4 +1,4 @@
-"""A commit as the rest of the history sees it: plain values, and text that no terminal obeys."""
+"""A commit as plain values, with text that is safe to print on a terminal."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ class Commit:
     Attributes:
         revision: its hash, 40 hex digits.
         tree: hash of its tree.
-        parents: hashes of those before it, the first the one it was made from.
+        parents: hashes of its parents; the first is the commit that it was made from.
         time: when it was recorded, seconds since 1970.
-        author: who it was made for: ``press-3 <station-1@host>``.
-        message: subject, empty line, body; characters that no terminal should get are replaced.
+        author: the PLC: ``press-3 <station-1@host>``.
+        message: subject, empty line, body; characters that are not printable are replaced.
     """
 
     revision: str
@@ -34,7 +34,7 @@ class Commit:
 
 
 def parse_commit(sha: str, data: bytes) -> Commit:
-    """A commit from its bytes; dulwich's errors for what is none.
+    """Parse the bytes of a commit; dulwich's errors if they are not valid.
 
     Args:
         sha: its hash, 40 hex digits.
@@ -52,7 +52,7 @@ def parse_commit(sha: str, data: bytes) -> Commit:
 
 
 def printable(text: str) -> str:
-    """The text without what could steer a terminal: other characters stand as ``?``, lines stay lines."""
+    """Replace characters that a terminal could obey with ``?``; line ends are kept."""
     if text.replace("\n", "").isprintable():
         return text
     return "".join(char if char.isprintable() or char == "\n" else "?" for char in text)

@@ -1,4 +1,4 @@
-"""What a caller uses: record a backup, and find it again."""
+"""The interface of a history: record a backup, and find it again."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _PATIENCE_S: Final = 1.0
 
 @dataclass(frozen=True, slots=True)
 class LogEntry:
-    """One PLC's part of a commit; ``removed`` if its file was taken out, which fatektool never does."""
+    """A commit that changed the file of one PLC; ``removed`` if it deleted it, which fatektool never does."""
 
     name: str
     commit: Commit
@@ -46,13 +46,13 @@ class LogEntry:
 
 @dataclass(frozen=True, slots=True)
 class Stored:
-    """A backup as the history holds it.
+    """A recorded backup.
 
     Attributes:
         name: the PLC.
-        commit: the one that recorded it.
-        data: the file's bytes.
-        backup: the same, read and checked.
+        commit: the commit that recorded it.
+        data: the bytes of the file.
+        backup: the same, parsed and checked.
     """
 
     name: str
@@ -67,14 +67,14 @@ class Stored:
 
 
 class History:
-    """The programs of many PLCs, and how they changed. Threads may share one.
+    """The recorded programs of many PLCs. Threads may share one.
 
-    As a context it keeps the repository open from one ``record`` to the next: for a round of many PLCs.
+    As a context manager it keeps the repository open between calls of ``record``, for a round of many PLCs.
 
     Args:
-        folder: a bare git repository; made by the first ``record``.
-        wait_s: how long ``record`` waits for another process that writes it, in seconds.
-        waiting: is told who that is.
+        folder: a bare git repository; the first ``record`` creates it.
+        wait_s: how long ``record`` waits for another process that writes the history, in seconds.
+        waiting: is called with a text that names that process.
         clock: seconds since 1970; for tests.
     """
 
@@ -100,24 +100,24 @@ class History:
 
     def __exit__(self, *_: object) -> None:
         self._keeps = False
-        # A thread that waits for another process may keep it: nobody waits for that one at the end.
+        # A thread that waits for another process may hold it: that is not waited for here.
         if self._turn.acquire(timeout=_PATIENCE_S):
             self._close()
             self._turn.release()
 
     def record(self, name: str, backup: Backup) -> RecordResult:
-        """Keep a backup, if its program is another than the one that the history holds for this PLC.
+        """Record a backup, if its program differs from the last one recorded for this PLC.
 
-        It is on disk when this returns. Nothing is lost if this fails at any place.
+        It is on disk when this returns. A failure at any step loses nothing that was recorded before.
 
         Args:
             name: the PLC.
             backup: its program.
 
         Raises:
-            UsageError: the name is none, or the folder cannot be written.
+            UsageError: the name is not valid, or the folder cannot be written.
             DataError: the history is damaged, or the disk is full.
-            PortBusy: another process writes it, and goes on.
+            PortBusy: another process still writes the history after the wait.
         """
         require_name(name)
         with self._turn:
@@ -134,14 +134,14 @@ class History:
                     return found
                 try:
                     pack_loose(repository)
-                except FatektoolError as error:  # the backup is kept, and the next run tries again
+                except FatektoolError as error:  # the backup is recorded, and the next run tries again
                     warnings = (*found.warnings, f"the history could not be packed: {error}")
                     return replace(found, warnings=warnings)
                 return found
 
     @contextmanager
     def _open(self) -> Iterator[Repository]:
-        """The repository: the one that is kept, until something is wrong with it."""
+        """The open repository; closed after an error."""
         repository = self._kept or Repository(self.folder)
         self._kept = repository
         try:
@@ -158,11 +158,11 @@ class History:
             self._kept = None
 
     def names(self) -> list[str]:
-        """The PLCs whose programs it holds now.
+        """The PLCs in the newest commit.
 
         Raises:
-            UsageError: there is no such folder.
-            DataError: it is damaged, or no history.
+            UsageError: the folder does not exist.
+            DataError: it is damaged or not a history.
         """
         with Repository(self.folder) as repository:
             tip = repository.tip()
@@ -172,11 +172,11 @@ class History:
         """The changes, newest first.
 
         Args:
-            name: of this PLC alone; None for all.
+            name: a PLC; None for all PLCs.
 
         Raises:
-            UsageError: there is no such folder, or no such PLC in it.
-            DataError: it is damaged, or no history.
+            UsageError: the folder does not exist, or has no such PLC.
+            DataError: it is damaged or not a history.
         """
         with Repository(self.folder) as repository:
             if name is None:
@@ -190,14 +190,14 @@ class History:
                 raise self._unknown(name)
 
     def show(self, name: str, revision: str = "HEAD") -> Stored:
-        """A PLC's backup as it was at a revision.
+        """The backup of a PLC at a revision.
 
         Args:
             name: the PLC.
             revision: see ``fatektool.history.revisions``.
 
         Raises:
-            UsageError: there is no such folder, PLC or revision.
+            UsageError: the folder, the PLC or the revision does not exist.
             DataError: the history or the stored file is damaged.
         """
         with Repository(self.folder) as repository:
@@ -212,7 +212,7 @@ class History:
             return Stored(name, recorded, data, Backup.parse(data, f"{name}@{commit.revision[:SHORT]}"))
 
     def before(self, found: Stored) -> Backup | None:
-        """The backup that the history held of a PLC before this one; None if there is none that can be read.
+        """The previous backup of the same PLC; None if there is none, or if it cannot be read.
 
         Raises:
             DataError: the history is damaged.
@@ -224,23 +224,23 @@ class History:
                 return None
             try:
                 return Backup.parse(repository.read(blob, "blob"), found.name)
-            except DataError:  # 'history check' names it
+            except DataError:  # 'history check' reports it
                 return None
 
     def diff(self, name: str, a: str = "~1", b: str = "HEAD") -> Comparison:
-        """A PLC's program at two revisions; by default, its last change.
+        """Compare the program of a PLC at two revisions; by default, before and after its last change.
 
         Raises:
-            UsageError: there is no such folder, PLC or revision.
+            UsageError: the folder, the PLC or the revision does not exist.
             DataError: the history or a stored file is damaged.
         """
         return compare(self.show(name, a).backup.program, self.show(name, b).backup.program)
 
     def export(self, name: str, revision: str, file: Path, *, overwrite: bool = False) -> Stored:
-        """Write a stored backup to a file, as it was recorded; ``restore`` takes it.
+        """Write a recorded backup to a file, for ``restore``.
 
         Raises:
-            UsageError: there is no such folder, PLC or revision; or the file cannot be written.
+            UsageError: the folder, the PLC or the revision does not exist, or the file cannot be written.
             DataError: the history or the stored file is damaged, or the disk is full.
         """
         found = self.show(name, revision)
@@ -258,7 +258,7 @@ class History:
 
 
 def _changes(repository: Repository) -> Iterator[LogEntry]:
-    """What each commit did, newest first; each tree is read once, and what two have in common passed over."""
+    """The changes of all commits, newest first. Each tree is read once."""
     after: Commit | None = None
     new: set[Item] = set()
     for commit in repository.chain(repository.tip()):
@@ -273,7 +273,7 @@ def _changes(repository: Repository) -> Iterator[LogEntry]:
 
 
 def _between(old: set[Item], new: set[Item], commit: Commit) -> Iterator[LogEntry]:
-    """What one commit did, from the tree before and its own."""
+    """The changes of one commit, from the items of the tree before it and of its own."""
     before, after = files(old - new), files(new - old)
     for name in sorted(before.keys() | after.keys()):
         if before.get(name) != after.get(name):

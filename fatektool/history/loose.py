@@ -4,10 +4,11 @@
 
     objects/1c/fe93ed61398c6d2d…      zlib of: kind, space, length, 00, data; named by the SHA-1 of that
 
-What is written has dulwich's form, and is written here. dulwich's ``add_object`` keeps a damaged file that
-has the object's name, so that a backup counts as recorded and is lost; it syncs no folder; killed, it leaves
-a lock that ``git fsck`` reports and the next write of that object stops at. And it is read here: dulwich
-parses each tree as it reads it, which takes 3.5 times as long with 1000 PLCs.
+dulwich makes the bytes of the file, and the file is written here. dulwich's ``add_object`` keeps a damaged
+file that has the object's name: a backup would count as recorded and be lost. It does not sync the folder.
+If it is killed it leaves a lock which ``git fsck`` reports as an error, and at which the next write of that
+object stops. Objects are read here too: dulwich parses each tree that it reads, which takes 3.5 times as long
+with 1000 PLCs.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ TEMPORARY: Final = "tmp_obj_fatektool-"
 
 
 def read_loose(folder: Path, sha: str) -> tuple[str, bytes] | None:
-    """An object's kind and data; None if there is no such file, or it is not what its name says.
+    """Read an object: its kind and data. None if the file does not exist or does not match its hash.
 
     Args:
         folder: the repository.
@@ -49,12 +50,12 @@ def read_loose(folder: Path, sha: str) -> tuple[str, bytes] | None:
 
 
 def write_loose(folder: Path, new: ShaFile, rights: Rights) -> str:
-    """Put an object on disk; one that is there anew, as it may be damaged or about to go.
+    """Write an object to disk. An existing file is replaced: it may be damaged, or ``git gc`` may delete it.
 
     Args:
         folder: the repository.
         new: the object.
-        rights: what its file and folder are for others.
+        rights: the permissions of its file and folder.
 
     Returns:
         its hash, 40 hex digits.

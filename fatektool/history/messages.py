@@ -1,4 +1,4 @@
-"""What a commit says: who it was made for, and what changed.
+"""The text of a commit: the PLC, and what changed.
 
 ::
 
@@ -12,8 +12,8 @@
     source   station 1 on tcp://192.168.2.3, facon
     read     2026-11-22T03:15:00Z by fatektool 0.1.0
 
-Author is the PLC, with the time at which its program was read; committer is fatektool on its computer, with
-the time at which it was recorded. All of it is printable text on its own line, whatever a target is called.
+The author is the PLC, with the time at which its program was read. The committer is fatektool on this
+computer, with the time of the recording. Everything is printable text, each value on its own line.
 """
 
 from __future__ import annotations
@@ -33,16 +33,16 @@ if TYPE_CHECKING:
 def subject(
     name: str, found: Comparison | None, networks: str | None = None, *, damaged: bool = False
 ) -> str:
-    """The message's first line.
+    """The first line of the message.
 
     Args:
         name: the PLC.
-        found: the old program against the new one; None if there is no old one.
-        networks: the networks that differ, in words; None where a program has no mnemonics.
-        damaged: True if there is one, and it cannot be read.
+        found: the comparison of the old program with the new one; None if there is no old one.
+        networks: the networks that differ, in words; None if a program has no mnemonics.
+        damaged: True if there is an old one that cannot be read.
     """
     if found is None:
-        return f"{name}: backup again, the one before is damaged" if damaged else f"{name}: first backup"
+        return f"{name}: new backup, the previous one is damaged" if damaged else f"{name}: first backup"
     if found.a_ladder_words != found.b_ladder_words:
         size = f"ladder size {found.a_ladder_words} -> {found.b_ladder_words} words, "
     else:
@@ -58,10 +58,10 @@ def message(
 
     Args:
         first_line: the subject.
-        found: the old program against the new one; None if there is no old one.
-        old: the backup before; None if there is none to read.
+        found: the comparison of the old program with the new one; None if there is no old one.
+        old: the previous backup; None if there is none that can be read.
         new: the backup that is recorded.
-        networks: all networks that differ, in words; None where a program has no mnemonics.
+        networks: all networks that differ, in words; None if a program has no mnemonics.
     """
     source = new.source
     line = f", {source.line}" if source.line else ""
@@ -81,18 +81,18 @@ def message(
 
 
 def author(name: str, backup: Backup) -> bytes:
-    """The PLC as git names people: ``press-3 <station-1@192.168.2.3:500>``."""
+    """The PLC as the author of a commit: ``press-3 <station-1@192.168.2.3:500>``."""
     place = backup.source.target.rpartition("://")[2]
     return f"{name} <station-{backup.source.station}@{_address(place)}>".encode()
 
 
 def committer() -> bytes:
-    """This program on this computer."""
+    """The committer: fatektool on this computer."""
     return f"fatektool <fatektool@{_address(socket.gethostname())}>".encode()
 
 
 def read_at(backup: Backup, otherwise: int) -> int:
-    """When the program was read, in seconds since 1970; else another time, if git cannot hold that."""
+    """When the program was read, in seconds since 1970; ``otherwise`` if that is not a valid time for git."""
     try:
         return max(0, int(datetime.fromisoformat(backup.created).astimezone(UTC).timestamp()))
     except (ValueError, OverflowError):

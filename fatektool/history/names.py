@@ -1,4 +1,4 @@
-"""What a PLC may be called in a history: its name is a file's name, on every system that may clone it."""
+"""Names of PLCs in a history: each is the name of a file, on every system that may clone it."""
 
 from __future__ import annotations
 
@@ -12,30 +12,27 @@ SUFFIX: Final = ".json"
 
 
 def require_name(name: str) -> str:
-    """Check a PLC's name: letters, digits, ``_``, ``-`` and ``.``, the first a letter, digit or ``_``.
-
-    Never a path, no control characters, no ``@`` (that is where a revision begins), no name that Windows
-    keeps for a device, 64 characters and 250 bytes at most.
+    """Check the name of a PLC; see ``is_portable_name``. ``@`` is not allowed: a revision follows it.
 
     Raises:
-        UsageError: it is none.
+        UsageError: the name is not valid.
     """
     if not is_portable_name(name):
         raise UsageError(
-            f"{name!r} is no name for a PLC: expected up to 64 letters, digits, '_', '-' and '.', "
-            f"{MOST_BYTES} bytes, not beginning with '-' or '.', and no port's name"
+            f"{name!r} is not a valid name for a PLC: expected up to 64 letters, digits, '_', '-' and '.', "
+            f"at most {MOST_BYTES} bytes, not beginning with '-' or '.', and not the name of a port"
         )
     return name
 
 
 def file_of(name: str) -> bytes:
-    """The file in which a PLC's backup lies."""
+    """The name of the file with the backup of a PLC."""
     return (require_name(name) + SUFFIX).encode()
 
 
-@lru_cache(maxsize=8192)  # a thousand names stand in every tree
+@lru_cache(maxsize=8192)  # every tree has a thousand names
 def name_of(file: bytes) -> str | None:
-    """The PLC whose backup is in this file; None for a file that is none of ours."""
+    """The PLC whose backup is in this file; None for another file."""
     try:
         text = file.decode()
         return require_name(text.removesuffix(SUFFIX)) if text.endswith(SUFFIX) else None

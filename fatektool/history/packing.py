@@ -1,12 +1,12 @@
-"""Many small files into one: a thousand PLCs change some ten thousand objects a year.
+"""Put loose objects into a pack: a thousand PLCs add some ten thousand objects a year.
 
 New objects are a file each. When there are a thousand, dulwich writes them into one pack. When the pack is on
-disk the files are taken away: whatever ends this, every object is there at least once.
+disk, the files are deleted. If the process ends at any step, every object exists at least once.
 
-Which files go into it and when they are taken away is decided here: dulwich's ``pack_loose_objects`` stops at
-a damaged file, holds all objects in memory, and takes the files away before the pack's folder is synced.
+Which files are packed and when they are deleted is decided here: dulwich's ``pack_loose_objects`` stops at a
+damaged file, holds all objects in memory, and deletes the files before the folder of the pack is synced.
 
-The pack has no deltas: to find those in Python takes longer than to read the PLCs. ``git gc`` finds them.
+The pack has no deltas: finding them in Python takes longer than reading the PLCs. ``git gc`` makes them.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from fatektool.history.repository import Repository
 
 MANY: Final = 1000
-_UNFINISHED_S: Final = 3600  # a pack without an index may be one that git is about to finish
+_UNFINISHED_S: Final = 3600  # git may be about to write the index of a newer pack
 _REST: Final = re.compile(r"[0-9a-f]{38}")
 _NUMBERS: Final = {kind.type_name.decode(): kind.type_num for kind in OBJECT_CLASSES}
 _FOLDERS: Final = [f"{number:02x}" for number in range(256)]
@@ -39,18 +39,18 @@ def is_due(repository: Repository) -> bool:
 
 
 def pack_loose(repository: Repository) -> int:
-    """Put the loose objects into a pack; the caller holds the right to write.
+    """Put the loose objects into a pack; the caller holds the lock of the history.
 
-    A damaged one stays where it is, for ``check`` to name.
+    A damaged object stays where it is, and ``check`` reports it.
 
     Returns:
-        how many objects were packed.
+        the number of packed objects.
 
     Raises:
-        DataError: the disk is full, or dulwich cannot; nothing is lost.
+        DataError: the disk is full, or dulwich failed; nothing is lost.
     """
     objects = repository.folder / "objects"
-    with repository.door("the loose objects"):
+    with repository.guard("the loose objects"):
         _sweep(repository)
         places = [place for place in _loose(objects) if _read(repository, place) is not None]
         if not places:
@@ -59,9 +59,9 @@ def pack_loose(repository: Repository) -> int:
         store.fsync_object_files = True
         packs = objects / "pack"
         before = set(packs.glob("pack-*"))
-        # Each is read again when its turn comes: a thousand at once would be some 40 MB.
+        # Each is read again when it is written: a thousand in memory would be some 40 MB.
         store.add_pack_data(len(places), (_unpacked(repository, place) for place in places))
-        for path in set(packs.glob("pack-*")) - before:  # others may be another user's
+        for path in set(packs.glob("pack-*")) - before:  # older ones may belong to another user
             path.chmod(path.stat().st_mode & 0o440)
             repository.rights.give(path)
         sync_folder(packs)
@@ -77,7 +77,7 @@ def _read(repository: Repository, place: Path) -> tuple[str, bytes] | None:
 def _unpacked(repository: Repository, place: Path) -> UnpackedObject:
     found = _read(repository, place)
     if found is None:
-        raise repository.damaged(f"{place.name} was whole and is not any more")
+        raise repository.damaged(f"{place.name} was valid when it was read first, and is not any more")
     kind, data = found
     sha = bytes.fromhex(place.parent.name + place.name)
     return UnpackedObject(_NUMBERS[kind], decomp_chunks=[data], sha=sha)
@@ -89,7 +89,7 @@ def _loose(objects: Path) -> list[Path]:
 
 
 def _sweep(repository: Repository) -> None:
-    """Take away what killed runs left unfinished."""
+    """Delete unfinished files of killed runs."""
     objects = repository.folder / "objects"
     left = [path for name in _FOLDERS for path in (objects / name).glob(f"{TEMPORARY}*")]
     left += [path for pattern in _OURS for path in (objects / "pack").glob(pattern)]

@@ -1,12 +1,12 @@
-"""Keeping a backup, if its program is another than the one that the history holds for this PLC.
+"""Record a backup, if its program differs from the last one recorded for this PLC.
 
 ::
 
-    look     the newest commit, its tree, this PLC's blob        most PLCs, most nights: no more than that
-    write    blob, tree, commit, then the branch (``writing``)   1 of 100, under the lock, after another look
+    look     the newest commit, its tree, this PLC's blob        enough for most PLCs on most nights
+    write    blob, tree, commit, then the branch (``writing``)   about 1 of 100; under the lock, looks again
 
-A look takes no lock and writes nothing, so that a night's round waits for nobody but where something changed.
-A backup before that cannot be read is told, and no reason to lose today's.
+A look takes no lock and writes nothing, so a round waits only where a program changed. If the previous backup
+cannot be read, that is a warning, and the new one is recorded.
 """
 
 from __future__ import annotations
@@ -42,14 +42,14 @@ _MOST_NETWORKS = 1000
 
 @dataclass(frozen=True, slots=True)
 class RecordResult:
-    """What became of a backup.
+    """The result of a recording.
 
     Attributes:
         name: the PLC.
-        revision: the new commit, 40 hex digits; None if the program is the one that is there already.
+        revision: the new commit, 40 hex digits; None if the program did not change.
         subject: in words: ``press-3: 4 words in 2 pages changed``.
-        changes: the old program against the new one; None for a first backup.
-        warnings: what the user should know: a damaged file before this one.
+        changes: the comparison of the old program with the new one; None for a first backup.
+        warnings: for the user, such as a damaged previous backup.
     """
 
     name: str
@@ -61,12 +61,12 @@ class RecordResult:
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """A PLC's backup beside the one that the history holds.
+    """A new backup compared with the last one that was recorded.
 
     Attributes:
-        newest: what was looked at.
-        old: the backup there; None if there is none, or none that can be read.
-        changes: the old program against the new one; None without an old one.
+        newest: the newest commit at that time.
+        old: the last backup of this PLC; None if there is none that can be read.
+        changes: the comparison of the old program with the new one; None without an old one.
         warnings: why the old one cannot be read.
     """
 
@@ -77,15 +77,15 @@ class Look:
 
     @property
     def same(self) -> bool:
-        """True if the history holds this very program."""
+        """True if the last recorded program is the same."""
         return self.changes is not None and self.changes.same
 
 
 def look(repository: Repository, name: str, backup: Backup) -> Look:
-    """Compare a backup with the newest one.
+    """Compare a backup with the last one that was recorded.
 
     Raises:
-        DataError: the newest commit or its tree does not hold.
+        DataError: the newest commit or its tree is damaged.
     """
     newest = repository.newest()
     blob = file_in(newest.items, name)
@@ -93,36 +93,36 @@ def look(repository: Repository, name: str, backup: Backup) -> Look:
         return Look(newest)
     try:
         old = Backup.parse(repository.read(blob, "blob"), name)
-    except DataError as error:  # no reason to lose today's backup too
-        return Look(newest, warnings=(f"the backup before could not be read: {error}",))
+    except DataError as error:  # the new backup is recorded all the same
+        return Look(newest, warnings=(f"the previous backup cannot be read: {error}",))
     return Look(newest, old, compare(old.program, backup.program))
 
 
 def unchanged(name: str, found: Look) -> RecordResult:
-    """What is said of a program that the history holds already."""
+    """The result for a program that did not change."""
     return RecordResult(name, None, f"{name}: unchanged", found.changes)
 
 
 def write(
     repository: Repository, name: str, backup: Backup, seen: Look | None, *, now: int, wait_s: float
 ) -> RecordResult:
-    """Record a backup that is another; the caller holds the right to write.
+    """Record a backup if it differs; the caller holds the lock of the history.
 
     Args:
         repository: the history.
         name: the PLC.
         backup: its program.
-        seen: a look without that right, which holds if nobody has written since.
+        seen: a look before the lock was taken; used again if nothing was written since.
         now: seconds since 1970.
         wait_s: how long to wait for another git program.
 
     Raises:
-        UsageError: another PLC's name is the same but for case.
-        DataError: the newest commit or its tree does not hold.
-        PortBusy: another git program holds the branch.
+        UsageError: the name of another PLC differs only in case.
+        DataError: the newest commit or its tree is damaged.
+        PortBusy: another git program holds the lock of the branch.
         OSError: the disk is full or broken.
     """
-    while True:  # once more if somebody pushed into it meanwhile
+    while True:  # again if something was pushed into the history meanwhile
         tip = repository.tip()
         found = seen if seen is not None and seen.newest.tip == tip else look(repository, name, backup)
         if found.same:
@@ -146,7 +146,7 @@ def write(
 
 
 def _networks(old: Backup | None, new: Backup) -> Sequence[NetworkChange] | None:
-    """The networks that differ; None if there is no old program, or one of them has no mnemonics."""
+    """The networks that differ; None if there is no old program, or a program has no mnemonics."""
     if old is None:
         return None
     before, now = code_of(old.program), code_of(new.program)
@@ -158,7 +158,7 @@ def _is_tip(repository: Repository, tip: str | None) -> bool:
 
 
 def _new_file(repository: Repository, old: Sequence[Item], name: str, backup: Backup) -> tuple[Blob, Tree]:
-    """The blob, and the tree with it."""
+    """The new blob, and the new tree with it."""
     if file_in(old, name) is None:
         _require_own_file(repository, old, name)
     blob = Blob.from_string(backup.to_bytes())
@@ -170,7 +170,8 @@ def _require_own_file(repository: Repository, items: Sequence[Item], name: str) 
     twin = next((other for other in others if other.casefold() == name.casefold()), None)
     if twin is not None:
         raise UsageError(
-            f"{name!r} and {twin!r} of the history {repository.folder} would share a file",
+            f"{name!r} differs only in case from {twin!r} in the history {repository.folder}: "
+            "on Windows and macOS both would be the same file",
             hint="choose another name",
         )
 

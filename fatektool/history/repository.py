@@ -1,12 +1,12 @@
-"""Reading a history: the one door to dulwich, behind which every object is what its hash says.
+"""Read a history with dulwich. The hash of each object is checked, and errors are in the project's words.
 
 ::
 
     HEAD -> refs/heads/main -> commit -> tree -> {NAME.json: blob}
                                  └─ parent -> tree …
 
-A reference that cannot be read is an error here, never "there is none yet": a commit without its parent
-would cut the whole history off. dulwich's ``read_ref`` makes no difference between the two.
+A branch that cannot be read is an error here, and never "no commit yet": a commit without its parent would
+cut off the history. dulwich's ``read_ref`` returns None in both cases.
 """
 
 from __future__ import annotations
@@ -43,11 +43,11 @@ _BRANCH: Final = re.compile(rb"ref: (refs/heads/[^\0\s]+)\s*")
 
 @dataclass(frozen=True, slots=True)
 class Newest:
-    """What a history holds now.
+    """The newest commit of a history.
 
     Attributes:
-        tip: the newest commit's hash; None before the first.
-        items: what its tree names: every PLC's file.
+        tip: its hash; None before the first commit.
+        items: the items of its tree: the files of all PLCs.
     """
 
     tip: str | None
@@ -61,8 +61,8 @@ class Repository:
         folder: the bare repository.
 
     Raises:
-        UsageError: there is no such folder, or it may not be read.
-        DataError: it is no repository that holds a history.
+        UsageError: the folder does not exist or cannot be read.
+        DataError: it is not a bare git repository of version 0.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -71,19 +71,21 @@ class Repository:
         if not folder.is_dir():
             raise UsageError(
                 f"there is no history {folder}",
-                hint="the first 'fatektool history record' makes it",
+                hint="'fatektool history record' creates it",
                 file=str(folder),
             )
         if (folder / ".git").exists():
             raise DataError(
                 f"{folder} has a work tree: expected a bare repository",
-                hint=f"name another folder, or make one with 'git clone --bare {folder} OTHER'",
+                hint=f"use another folder, or create one: git clone --bare {folder} OTHER",
                 file=str(folder),
             )
-        with self.door("the repository"):
+        with self.guard("the repository"):
             if not is_repository(folder):
                 raise DataError(
-                    f"{folder} is no git repository", hint="name the history's folder", file=str(folder)
+                    f"{folder} is not a git repository",
+                    hint="give the folder of the history",
+                    file=str(folder),
                 )
             self.git = Repo(str(folder), bare=True)
         try:
@@ -99,11 +101,11 @@ class Repository:
         self.close()
 
     def close(self) -> None:
-        """Let its files go."""
+        """Close its files."""
         self.git.close()
 
     def _require_format(self) -> Rights:
-        with self.door("config"):
+        with self.guard("config"):
             rights = rights_of(self.folder)
             try:
                 form = self.git.get_config().get((b"core",), b"repositoryformatversion")
@@ -112,18 +114,21 @@ class Repository:
         if form != b"0":
             raise DataError(
                 f"{self.folder} is a git repository of another format: expected version 0, got {form!r}",
-                hint="name another folder",
+                hint="use another folder",
                 file=str(self.folder),
             )
         return rights
 
     @contextmanager
-    def door(self, what: str) -> Iterator[None]:
-        """Let errors out in the project's words only.
+    def guard(self, what: str) -> Iterator[None]:
+        """Turn every error into one of the project's.
+
+        Args:
+            what: what is read, for the message.
 
         Raises:
-            DataError: what dulwich finds damaged.
-            UsageError: a file may not be read or written.
+            DataError: dulwich cannot read it.
+            UsageError: a file cannot be read or written.
         """
         try:
             yield
@@ -131,18 +136,16 @@ class Repository:
             raise
         except OSError as error:
             raise file_error("use", self.folder, error) from error
-        except (
-            Exception
-        ) as error:  # damaged bytes come out of dulwich as anything: KeyError, AssertionError, …
+        except Exception as error:  # dulwich raises any error for damaged bytes: KeyError, AssertionError, …
             reason = " ".join(f"{type(error).__name__} {error}".split())[:200]
-            let_go(error)
+            release(error)
             raise self.damaged(f"{what} cannot be read ({reason})") from error
 
     def damaged(self, what: str) -> DataError:
-        """The error for something in here that does not hold."""
+        """The error for damage in this repository."""
         return DataError(
             f"{self.folder}: {what}",
-            hint="see 'fatektool history check' and 'git fsck'; a clone or the pushed copy may be whole",
+            hint="run 'fatektool history check' and 'git fsck'; a clone or the pushed copy may be undamaged",
             file=str(self.folder),
         )
 
@@ -150,22 +153,22 @@ class Repository:
         """The branch that HEAD names, in full: ``refs/heads/main``.
 
         Raises:
-            DataError: HEAD names none.
+            DataError: HEAD does not name a branch.
         """
-        with self.door("HEAD"):
+        with self.guard("HEAD"):
             found = _BRANCH.fullmatch((self.folder / "HEAD").read_bytes())
             if found is None or b".." in found[1]:
                 raise self.damaged("HEAD: expected 'ref: refs/heads/BRANCH'")
             return found[1].decode()
 
     def tip(self) -> str | None:
-        """The newest commit's hash; None before the first.
+        """The hash of the newest commit; None before the first.
 
         Raises:
-            DataError: the branch does not hold.
+            DataError: the branch cannot be read.
         """
         branch = self.branch()
-        with self.door(branch):
+        with self.guard(branch):
             try:
                 sha = (self.folder / branch).read_bytes().strip()
             except (FileNotFoundError, IsADirectoryError):
@@ -178,14 +181,14 @@ class Repository:
         return sha.decode()
 
     def read(self, sha: str, kind: str) -> bytes:
-        """An object's bytes, proven by its hash.
+        """Read an object and check its hash.
 
         Args:
             sha: 40 hex digits.
             kind: ``commit``, ``tree`` or ``blob``.
 
         Raises:
-            DataError: it is not there, of another kind, or damaged.
+            DataError: it is missing, damaged or of another kind.
         """
         got, data = self.any_object(sha)
         if got != kind:
@@ -193,15 +196,15 @@ class Repository:
         return data
 
     def any_object(self, sha: str) -> tuple[str, bytes]:
-        """The same for an object of any kind, which is told with it.
+        """Read an object of any kind: its kind and its bytes.
 
         Raises:
-            DataError: it is not there, or damaged.
+            DataError: it is missing or damaged.
         """
         loose = read_loose(self.folder, sha)
         if loose is not None:
             return loose
-        with self.door(f"object {sha}"):
+        with self.guard(f"object {sha}"):
             try:
                 number, data = self.git.object_store.get_raw(ObjectID(sha.encode()))
             except KeyError:
@@ -209,45 +212,45 @@ class Repository:
             head = object_header(number, len(data))
         kind = head.partition(b" ")[0].decode()
         if hashlib.sha1(head + data, usedforsecurity=False).hexdigest() != sha:
-            raise self.damaged(f"{kind} {sha} is damaged: its bytes have another hash")
+            raise self.damaged(f"{kind} {sha} is damaged: its bytes do not match its hash")
         return kind, data
 
     @cached_property
     def cut(self) -> frozenset[str]:
-        """The commits at which a shallow clone ends: those before them are not in it. Empty if it is none.
+        """The commits at which a shallow clone ends: older ones are missing. Empty if it is not shallow.
 
         Raises:
-            DataError: git's list of them does not hold.
+            DataError: git's list of them cannot be read.
         """
-        with self.door("shallow"):
+        with self.guard("shallow"):
             return frozenset(sha.decode() for sha in self.git.get_shallow())
 
     def commit(self, sha: str) -> Commit:
-        """A commit; one at which a shallow clone ends has no parents.
+        """Read a commit. One at which a shallow clone ends has no parents.
 
         Raises:
-            DataError: it does not hold.
+            DataError: it is missing or damaged.
         """
         data = self.read(sha, "commit")
-        with self.door(f"commit {sha}"):
+        with self.guard(f"commit {sha}"):
             found = parse_commit(sha, data)
         return replace(found, parents=()) if sha in self.cut else found
 
     def items(self, tree: str) -> list[Item]:
-        """What a tree names, in its order.
+        """The items of a tree, in its order.
 
         Raises:
-            DataError: the tree is not there, of another kind, or damaged.
+            DataError: the tree is missing or damaged.
         """
         data = self.read(tree, "tree")
-        with self.door(f"tree {tree}"):
+        with self.guard(f"tree {tree}"):
             return list(parse_tree(data, _HASH_BYTES))
 
     def newest(self) -> Newest:
-        """What the newest commit holds; read once as long as the branch names that commit.
+        """The newest commit; read again only if the branch names another one.
 
         Raises:
-            DataError: the branch, its commit or its tree does not hold.
+            DataError: the branch, its commit or its tree is damaged.
         """
         tip = self.tip()
         if self._newest is None or self._newest.tip != tip:
@@ -255,14 +258,14 @@ class Repository:
         return self._newest
 
     def is_now(self, newest: Newest) -> None:
-        """Take for the newest what has just been written, so that it need not be read."""
+        """Set the newest commit after a write, so that it need not be read."""
         self._newest = newest
 
     def chain(self, start: str | None) -> Iterator[Commit]:
-        """A commit and those it was made from, newest first; of a merge, the side it was made on.
+        """A commit and its ancestors, newest first; of a merge, the first parent.
 
         Raises:
-            DataError: one does not hold.
+            DataError: one of them is missing or damaged.
         """
         while start is not None:
             found = self.commit(start)
@@ -270,8 +273,8 @@ class Repository:
             start = found.parents[0] if found.parents else None
 
 
-def let_go(error: BaseException | None) -> None:
-    """Drop the frames that an error holds: a pack or a socket in them could not be closed."""
+def release(error: BaseException | None) -> None:
+    """Release the frames of an error: a pack or a socket in them could not be closed."""
     while error is not None:
         clear_frames(error.__traceback__)
         error.__traceback__ = None
@@ -279,5 +282,5 @@ def let_go(error: BaseException | None) -> None:
 
 
 def is_repository(folder: Path) -> bool:
-    """True for a bare git repository: HEAD is the last that is made of one."""
+    """True for a bare git repository. HEAD is the last file that is written of a new one."""
     return (folder / "HEAD").is_file() and (folder / "objects").is_dir() and (folder / "refs").is_dir()

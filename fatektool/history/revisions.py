@@ -1,11 +1,11 @@
-"""Which commit is meant.
+"""Find the commit of a revision.
 
 ::
 
-    HEAD  HEAD~2          the newest; the one two commits before it, of whatever PLC
-    ~1                    this PLC's program as it was before its last change; ~2, before the one before that
-    a1b2c3d               a hash, or four digits of one and more
-    2026-11-22            the last of that day or before, UTC; 2026-11-22T03:15:00Z likewise
+    HEAD  HEAD~2          the newest commit; the second before it, of any PLC
+    ~1                    the program of this PLC before its last change; ~2: the one before that
+    a1b2c3d               a hash: four digits or more
+    2026-11-22            the last commit on or before that day, UTC; 2026-11-22T03:15:00Z likewise
 """
 
 from __future__ import annotations
@@ -33,12 +33,12 @@ _TIME: Final = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d(:\d\d)?Z", re.ASCII)
 
 
 def changes_of(name: str, repository: Repository, start: str | None) -> Iterator[tuple[Commit, str | None]]:
-    """The commits in which one PLC's file changed, newest first, each with the blob that it is then.
+    """The commits that changed the file of one PLC, newest first, each with the blob of that file.
 
-    The blob is None where the file was taken out.
+    The blob is None if the commit deleted the file.
 
     Raises:
-        DataError: the history does not hold.
+        DataError: the history is damaged.
     """
     after: Commit | None = None
     seen: str | None = None
@@ -54,16 +54,16 @@ def changes_of(name: str, repository: Repository, start: str | None) -> Iterator
 
 
 def resolve(repository: Repository, name: str, revision: str) -> Commit:
-    """The commit that a revision means.
+    """The commit of a revision.
 
     Args:
         repository: the history.
         name: the PLC whose changes ``~N`` counts.
-        revision: as the user named it.
+        revision: as the user gave it.
 
     Raises:
-        UsageError: it means none.
-        DataError: the history does not hold.
+        UsageError: there is no such commit.
+        DataError: the history is damaged.
     """
     chain = repository.chain(repository.tip())
     found: Commit | None
@@ -79,13 +79,13 @@ def resolve(repository: Repository, name: str, revision: str) -> Commit:
         found = _by_hash(chain, revision.lower())
     else:
         raise UsageError(
-            f"{revision!r} is no revision: expected a hash such as a1b2c3d, HEAD~2, ~1, "
+            f"{revision!r} is not a revision: expected a hash such as a1b2c3d, HEAD~2, ~1, "
             f"or a date such as 2026-11-22"
         )
     if found is None:
         hint = f"see 'fatektool history log {name}'"
         if repository.cut:
-            hint += f"; it is a shallow clone: git -C {repository.folder} fetch --unshallow brings the rest"
+            hint += f"; it is a shallow clone: git -C {repository.folder} fetch --unshallow gets the rest"
         raise UsageError(f"there is no revision {name}@{revision} in {repository.folder}", hint=hint)
     return found
 
@@ -94,7 +94,7 @@ def _by_hash(chain: Iterator[Commit], digits: str) -> Commit | None:
     found = [commit for commit in chain if commit.revision.startswith(digits)]
     if len(found) > 1:
         first = ", ".join(each.revision[:SHORT] for each in found[:5])
-        raise UsageError(f"{digits} begins {len(found)} revisions: {first}", hint="give more digits")
+        raise UsageError(f"{len(found)} revisions begin with {digits}: {first}", hint="give more digits")
     return found[0] if found else None
 
 
@@ -103,4 +103,4 @@ def _last_second(text: str) -> int:
         began = datetime.fromisoformat(text).replace(tzinfo=UTC)
         return int((began + (timedelta(days=1, seconds=-1) if "T" not in text else timedelta())).timestamp())
     except (ValueError, OverflowError) as error:
-        raise UsageError(f"{text}: there is no such day or time") from error
+        raise UsageError(f"{text} is not a valid date or time") from error

@@ -1,7 +1,7 @@
-"""The rights of what is written: the user's and the group's, or as git's ``core.sharedRepository`` asks.
+"""Permissions of the files of a history: for user and group, or as git's ``core.sharedRepository`` says.
 
-Several users write one history after ``git init --bare --shared`` or ``git config core.sharedRepository
-group``: then each must be able to write into the folders, and over the files, of all others.
+Several users can write one history after ``git init --bare --shared`` or ``git config core.sharedRepository
+group``. Then each must be able to write into the folders, and replace the files, of all others.
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ FILE_MODE: Final = 0o640
 
 @dataclass(frozen=True, slots=True)
 class Rights:
-    """What the files of a history are to be for others; as they were made, unless ``shared`` says more."""
+    """The permissions for new files of a history; unchanged if ``shared`` is None."""
 
     shared: SharedPerm | None = None
 
     def give(self, path: Path) -> None:
-        """Give a file or folder that was just made its rights."""
-        with contextlib.suppress(FileNotFoundError, PermissionError):  # another process has it already
+        """Set the permissions of a new file or folder."""
+        with contextlib.suppress(FileNotFoundError, PermissionError):  # another process has replaced it
             adjust_shared_perm(path, self.shared)
 
     def make_folder(self, path: Path) -> None:
-        """Make a folder, and those that it is in, unless they are there."""
+        """Make a folder and its parents if they do not exist."""
         if path.is_dir():
             return
         self.make_folder(path.parent)
@@ -42,11 +42,11 @@ class Rights:
 
 
 def rights_of(folder: Path) -> Rights:
-    """The rights that a repository's own configuration asks for; not the user's, as git has it too.
+    """The permissions that the configuration of a repository asks for; the user's own is not read, as in git.
 
     Raises:
-        OSError: it cannot be read.
-        ValueError: it is none.
+        OSError: the configuration cannot be read.
+        ValueError: it is not valid.
     """
     try:
         value = ConfigFile.from_path(str(folder / "config")).get((b"core",), b"sharedRepository")

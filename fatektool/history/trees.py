@@ -1,4 +1,4 @@
-"""The PLCs' files in a tree. dulwich takes a tree apart and puts one together."""
+"""The PLCs' files in a tree. dulwich parses and writes trees."""
 
 from __future__ import annotations
 
@@ -14,26 +14,26 @@ if TYPE_CHECKING:
     from dulwich.objects import Blob
 
 Item: TypeAlias = tuple[bytes, int, bytes]
-"""What a tree names: path, mode, hash in 40 hex digits."""
+"""An item of a tree: path, mode, hash in 40 hex digits."""
 
 _PLAIN: Final = 0o100644
 _PLAIN_FILES: Final = (_PLAIN, 0o100755, 0o100664)
 
 
 def files(items: Iterable[Item]) -> dict[str, str]:
-    """The PLCs' files among these: name and blob. What else somebody put there is left out."""
+    """The PLCs' files among these items: name and blob. Other files are left out."""
     named = ((name_of(path), sha) for path, mode, sha in items if mode in _PLAIN_FILES)
     return {name: sha.decode() for name, sha in named if name is not None}
 
 
 def file_in(items: Iterable[Item], name: str) -> str | None:
-    """One PLC's blob among these; None if it is not there."""
+    """The blob of one PLC among these items; None if it has none."""
     file = file_of(name)
     return next((sha.decode() for path, mode, sha in items if path == file and mode in _PLAIN_FILES), None)
 
 
 def with_file(items: Iterable[Item], name: str, blob: Blob) -> Tree:
-    """The tree of these with one PLC's blob put in, in place of what has its name."""
+    """A tree of these items in which the file of one PLC is this blob."""
     tree = Tree()
     for path, mode, sha in items:
         tree.add(path, mode, ObjectID(sha))

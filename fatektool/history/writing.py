@@ -1,4 +1,4 @@
-"""Writing a history, in an order that holds whenever it ends.
+"""Write a history, in an order that is safe against a crash at every step.
 
 ::
 
@@ -7,12 +7,11 @@
     3. main.lock            a hard link to it: git's own lock, so that no 'git gc' or 'git push' is in between
     4. the branch           is it still what the commit was made from? Then rename of main.lock, fsync
 
-A run that is killed or has no room at 1 to 3 leaves objects that nothing names, which git passes over, and
-the branch as it was. A lock left at 3 has the bytes of ``fatektool.ref``: that is how the next run knows it
-for its own, and takes it away. Runs keep off each other by ``fatektool.lock``, which the kernel frees with
-its process.
+If the run is killed or the disk is full at 1 to 3, the branch does not change; git ignores the new objects,
+which are unused. A lock that is left at 3 has the bytes of ``fatektool.ref``: so the next run recognises it
+and deletes it. ``fatektool.lock`` lets one run write at a time; the kernel releases it with its process.
 
-A new repository gets its HEAD last: until then it is none, and the next run goes on making it.
+HEAD of a new repository is written last: until then it is not a repository, and the next run completes it.
 
 dulwich's ``Repo.init_bare`` and ``set_if_equals`` are not used. A killed ``init_bare`` cannot be repeated,
 and a killed ``set_if_equals`` leaves a lock that looks like git's.
@@ -58,17 +57,17 @@ _NO_LINKS: Final = {
 
 @contextlib.contextmanager
 def writing(folder: Path, wait_s: float, waiting: Callable[[str], None] = no_note) -> Iterator[None]:
-    """The right of this process to write a history, made if it is not there.
+    """Hold the lock of a history; the history is created if it does not exist.
 
     Args:
         folder: the repository.
         wait_s: how long to wait for another process.
-        waiting: is told who that is.
+        waiting: is called with a text that names that process.
 
     Raises:
-        UsageError: it cannot be made here.
+        UsageError: it cannot be created or written.
         DataError: the disk is full.
-        PortBusy: another process writes it, and goes on.
+        PortBusy: another process still writes it after the wait.
     """
     try:
         if not folder.is_dir():
@@ -92,9 +91,9 @@ def writing(folder: Path, wait_s: float, waiting: Callable[[str], None] = no_not
     except PermissionError as error:
         raise UsageError(
             f"cannot write {folder}: {error.strerror}: {error.filename}",
-            hint="check its rights; where several users write one history: "
+            hint="check the permissions. If several users write this history: "
             f"git -C {folder} config core.sharedRepository group, "
-            "then let the group write what is there already: chgrp -R, chmod -R g+rwX",
+            "then give the group access to the existing files: chgrp -R, chmod -R g+rwX",
             file=str(folder),
         ) from error
     except OSError as error:
@@ -105,8 +104,8 @@ def _require_ours(folder: Path) -> None:
     others = sorted(path.name for path in folder.iterdir() if path.name not in _MADE)
     if others:
         raise UsageError(
-            f"{folder} is neither empty nor a bare git repository: {others[0]!r} lies there",
-            hint="name another folder",
+            f"{folder} is neither empty nor a bare git repository: it contains {others[0]!r}",
+            hint="use another folder",
             file=str(folder),
         )
 
@@ -124,7 +123,7 @@ def _make(folder: Path) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Branch:
-    """A branch of a history: its folder, its name in full, ``refs/heads/main``, the rights of its files."""
+    """A branch: the folder of its history, its full name ``refs/heads/main``, permissions of new files."""
 
     folder: Path
     name: str
@@ -132,7 +131,7 @@ class Branch:
 
     @property
     def path(self) -> Path:
-        """The file that names its newest commit."""
+        """The file with the hash of its newest commit."""
         return self.folder / self.name
 
 
@@ -145,21 +144,21 @@ def move_branch(
     clock: Callable[[], float] = time.monotonic,
     sleep: Callable[[float], None] = time.sleep,
 ) -> bool:
-    """Let a branch name another commit, if it is still what that was made from.
+    """Move a branch to a new commit, if it has not moved since that commit was made.
 
     Args:
-        branch: it.
-        new: the commit.
-        still: looks whether the branch is as it was; called while nobody else can move it.
+        branch: the branch.
+        new: the hash of the commit.
+        still: True if the branch has not moved; called under the lock of the branch.
         wait_s: how long to wait for another git program.
         clock: seconds; for tests.
         sleep: waits so many seconds; for tests.
 
     Returns:
-        False if the branch was moved meanwhile, and nothing was done.
+        False if the branch moved meanwhile; nothing was changed.
 
     Raises:
-        PortBusy: another git program holds the branch.
+        PortBusy: another git program holds the lock of the branch.
         OSError: the disk is full or broken.
     """
     folder, path = branch.folder, branch.path
@@ -173,8 +172,8 @@ def move_branch(
         while not _taken(stage, lock):
             if not clock() < deadline:
                 raise PortBusy(
-                    f"{path} is held by another git program: {lock} is there",
-                    hint="let that end, or remove the file if there is none",
+                    f"{path} is locked by another git program: {lock} exists",
+                    hint="wait until that program ends; if no git program is running, delete that file",
                     resource=str(path),
                 )
             sleep(_POLL_S)
@@ -189,10 +188,10 @@ def move_branch(
 
 
 def drop_stale(folder: Path, branch: str) -> None:
-    """Take away what a killed run left of steps 2 and 3; a lock of another git only when it is an hour old.
+    """Delete what a killed run left of steps 2 and 3; a lock of another program only if it is an hour old.
 
     Raises:
-        OSError: it cannot be taken away.
+        OSError: it cannot be deleted.
     """
     lock, stage = folder / f"{branch}.lock", folder / STAGE
     with contextlib.suppress(FileNotFoundError):
@@ -216,7 +215,7 @@ def _taken(stage: Path, lock: Path) -> bool:
 
 
 def _taken_by_copy(stage: Path, lock: Path) -> bool:
-    """The same where there are no hard links."""
+    """The same on a file system without hard links."""
     try:
         write_synced(lock, stage.read_bytes())
         shutil.copymode(stage, lock)

@@ -1,4 +1,4 @@
-"""One more PLC at the end of an inventory: what is in the file stays as it is, to the byte."""
+"""Append a PLC to an inventory. The existing bytes of the file do not change."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ _BARE: Final = re.compile(r"[A-Za-z0-9_-]+", re.ASCII)
 
 
 def with_plc(data: bytes, file: Path, name: str, values: Mapping[str, Any]) -> bytes:
-    """The file's bytes with one more ``[plc.NAME]`` at the end.
+    """The bytes of the file with a new table ``[plc.NAME]`` at the end.
 
     Args:
-        data: the file's bytes; empty for a new one.
+        data: the bytes of the file; empty for a new file.
         file: the file, for messages.
-        name: what the PLC is called.
-        values: its keys, as TOML has them: texts, numbers, lists of texts.
+        name: the name of the PLC.
+        values: its keys with TOML values: strings, numbers, lists of strings.
 
     Raises:
-        UsageError: the name is taken, or a value is wrong.
+        UsageError: the name exists already, or a value is not valid.
         DataError: the file has faults.
     """
     before = parse_inventory(data, file)
     before.require_whole()
     if name in before.plcs:
-        raise UsageError(f"{name!r} is in the inventory {file} already", hint="choose another name")
+        raise UsageError(f"{name!r} is already in the inventory {file}", hint="choose another name")
     end = "\r\n" if b"\r\n" in data else "\n"
     gap = "" if not data else end if data.endswith(b"\n") else 2 * end
     lines = [f"[plc.{name if _BARE.fullmatch(name) else json.dumps(name, ensure_ascii=False)}]"]

@@ -1,6 +1,6 @@
-"""From TOML to PLCs, with all that is wrong named by its line.
+"""From TOML to PLCs, and every fault with its line.
 
-A value of ``[plc.NAME]`` goes before that of ``[defaults]``, and this before the built-in one.
+A value in ``[plc.NAME]`` overrides that in ``[defaults]``, and this the built-in default.
 """
 
 from __future__ import annotations
@@ -31,24 +31,24 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class PlcEntry:
-    """One PLC of the inventory; defaults are filled in.
+    """One PLC of the inventory, with the defaults filled in.
 
     Attributes:
-        name: what it is called.
-        target: as for ``connect``; a path in it is relative to the present folder, or absolute.
-        station: 1 to 254; over ``modbus-tcp`` 0 and 255 too.
-        protocol: what it speaks.
-        baud: speed of the serial line.
-        format: data bits, parity, stop bits; None for the protocol's own.
-        timeout_s: the PLC's time to answer, beside wire time.
-        retries: further tries of one exchange.
-        lock_wait_s: how long to wait for a port that another process uses.
-        tags: words by which PLCs are picked.
+        name: its name.
+        target: as for ``connect``; a path in it is relative to the current folder, or absolute.
+        station: 1 to 254; with ``modbus-tcp`` also 0 and 255.
+        protocol: its protocol.
+        baud: baud rate of the serial line.
+        format: data bits, parity, stop bits; None for the protocol's default.
+        timeout_s: time for the PLC to answer, in seconds, in addition to the wire time.
+        retries: retries per request.
+        lock_wait_s: how long to wait for a port that another process uses, in seconds.
+        tags: words for ``--select``.
         spec: the snapshot specification; None if there is none.
-        reference: a backup or project of the program that ought to be in it; None if there is none.
-        project: the WinProladder project with its elements' comments; None if there is none.
-        expect: ``run``, ``stop`` or ``any``: the mode that it ought to be in.
-        read_only: refuse whatever would write to it.
+        reference: a backup or project with the expected program; None if there is none.
+        project: the WinProladder project with the comments of its elements; None if there is none.
+        expect: the expected mode: ``run``, ``stop`` or ``any``.
+        read_only: refuse every write to it.
     """
 
     name: str
@@ -70,11 +70,11 @@ class PlcEntry:
 
 @dataclass(frozen=True, slots=True)
 class InventoryFault:
-    """Something in the file that does not hold.
+    """A fault in the file.
 
     Attributes:
-        line: where, from 1; None for the file as a whole.
-        message: what.
+        line: its line, from 1; None for the whole file.
+        message: what is wrong.
     """
 
     line: int | None
@@ -86,12 +86,12 @@ class InventoryFault:
 
 @dataclass(slots=True)
 class Inventory:
-    """What a file says.
+    """The contents of an inventory.
 
     Attributes:
         file: the file.
-        plcs: the PLCs by name, in the file's order; those without faults.
-        faults: all that does not hold, in the file's order.
+        plcs: the PLCs without faults by name, in the order of the file.
+        faults: all faults, in the order of the file.
     """
 
     file: Path
@@ -99,7 +99,7 @@ class Inventory:
     faults: list[InventoryFault] = field(default_factory=list)
 
     def require_whole(self) -> None:
-        """Raise DataError if there is a fault; all of them are in its details."""
+        """Raise DataError if there is a fault; its details have all of them."""
         if not self.faults:
             return
         more = f" (and {len(self.faults) - 1} more)" if len(self.faults) > 1 else ""
@@ -114,7 +114,7 @@ class Inventory:
         """The PLC of this name.
 
         Raises:
-            UsageError: there is none; says which are near.
+            UsageError: there is none; the message has similar names.
         """
         if name in self.plcs:
             return self.plcs[name]
@@ -126,11 +126,11 @@ class Inventory:
 
 
 def parse_inventory(data: bytes, file: Path) -> Inventory:
-    """Read an inventory; never raises: what does not hold is in its ``faults``.
+    """Parse an inventory. Never raises: faults are in its ``faults``.
 
     Args:
-        data: the file's bytes.
-        file: the file, for the paths in it.
+        data: the bytes of the file.
+        file: the file: paths are relative to its folder.
     """
     try:
         text = plain_text(data).replace("\r\n", "\n")
@@ -138,13 +138,15 @@ def parse_inventory(data: bytes, file: Path) -> Inventory:
         lines = key_lines(text)
     except ValueError as error:  # UnicodeDecodeError and TOMLDecodeError among them
         place = re.search(r" \(at line (\d+), column \d+\)$", str(error))
-        told = str(error)[: place.start()] if place else str(error)
-        return Inventory(file, faults=[InventoryFault(int(place[1]) if place else None, f"no TOML: {told}")])
+        reason = str(error)[: place.start()] if place else str(error)
+        return Inventory(
+            file, faults=[InventoryFault(int(place[1]) if place else None, f"not valid TOML: {reason}")]
+        )
     return _TableReader(Inventory(file), lines).read(document)
 
 
 class _TableReader:
-    """Takes a document apart, and notes what does not hold."""
+    """Reads the PLCs of a TOML document, and collects faults."""
 
     def __init__(self, inventory: Inventory, lines: dict[KeyPath, int]) -> None:
         self._found = inventory
@@ -170,17 +172,17 @@ class _TableReader:
         faults = len(self._found.faults)
         if not is_portable_name(name):
             self._fault(
-                f"a PLC's name: expected up to 64 letters, digits, '_', '-' and '.', and no port's name, "
-                f"got {name!r}",
+                f"name of a PLC: expected up to 64 letters, digits, '_', '-' and '.', "
+                f"not the name of a port, got {name!r}",
                 "plc",
                 name,
             )
         twin = next((other for other in self._found.plcs if other.lower() == name.lower()), None)
         if twin is not None:
-            self._fault(f"{name!r} and {twin!r} would share files: expected another name", "plc", name)
+            self._fault(f"{name!r} differs only in case from {twin!r}: expected another name", "plc", name)
         values = defaults | self._table(table, ("plc", name), CHECKS.keys())
         if "target" not in values and isinstance(table, dict) and "target" not in table:
-            self._fault(f'{name}: expected target = "tcp://HOST" or another', "plc", name)
+            self._fault(f'{name}: target is missing: expected for example target = "tcp://HOST"', "plc", name)
         protocol = values.get("protocol", DEFAULT)
         if len(self._found.faults) == faults:
             try:
@@ -199,7 +201,7 @@ class _TableReader:
             self._found.plcs[name] = PlcEntry(name, **values)
 
     def _table(self, table: object, path: tuple[str, ...], allowed: AbstractSet[str]) -> dict[str, Any]:
-        """The values of a table that hold, as a PLC has them."""
+        """The valid values of a table."""
         if not isinstance(table, dict):
             self._fault(f"expected a table [{'.'.join(path)}]", *path)
             return {}
@@ -216,14 +218,14 @@ class _TableReader:
             try:
                 found[key] = take(value, self._found.file.parent)
             except (ValueError, TypeError, UsageError) as error:
-                told = error.message if isinstance(error, UsageError) else f"{key}: expected {words}"
+                reason = error.message if isinstance(error, UsageError) else f"{key}: expected {words}"
                 got = "" if isinstance(error, UsageError) else f", got {_short(value)}"
-                self._fault(f"{'.'.join(path)}: {told}{got}", *path, key)
+                self._fault(f"{'.'.join(path)}: {reason}{got}", *path, key)
         return found
 
     def _fault(self, message: str, *path: str, got: str = "") -> None:
-        told = f"{message}, got {got!r}" if got else message
-        self._found.faults.append(InventoryFault(line_of(self._lines, *path), told))
+        reason = f"{message}, got {got!r}" if got else message
+        self._found.faults.append(InventoryFault(line_of(self._lines, *path), reason))
 
 
 def _short(value: object) -> str:

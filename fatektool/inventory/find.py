@@ -1,4 +1,4 @@
-"""Which file is the inventory, and whether a word names a PLC in it."""
+"""Find the file of the inventory, and tell names of PLCs from ports."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ _NO_NAME: Final = re.compile(r"COM\d+|.*[:/\\\0].*", re.ASCII | re.IGNORECASE | 
 
 
 def may_be_name(word: str) -> bool:
-    """False for what can only be a port: with a scheme, a slash or a backslash, or COM3."""
+    """False for a word that can only be a port: with a scheme, a slash or a backslash, or COM3."""
     return bool(word.strip()) and not _NO_NAME.fullmatch(word)
 
 
 def find_inventory(named: Path | None, places: Iterable[Path]) -> Path | None:
-    """The file that is named, else the first that is there.
+    """The file that the user gave, else the first of the usual files that exists.
 
     Args:
-        named: by the user; it need not be there.
-        places: where one may lie.
+        named: given by the user; it need not exist.
+        places: the usual files.
     """
     return named or next((place for place in places if place.is_file()), None)
 
 
 def no_inventory() -> UsageError:
-    """The error of having none."""
+    """The error if there is no inventory."""
     return UsageError(
         "no inventory found",
-        hint=f"name one with --inventory or FATEKTOOL_INVENTORY, put {FILE_NAME} here, "
-        "or begin one with 'fatektool inventory add'",
+        hint=f"give --inventory FILE, set FATEKTOOL_INVENTORY, put {FILE_NAME} into the current folder, "
+        "or create one with 'fatektool inventory add'",
     )

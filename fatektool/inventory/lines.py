@@ -1,6 +1,6 @@
-"""At which line of a TOML document a key stands: tomllib does not tell.
+"""The line of each key in a TOML document, which tomllib does not give.
 
-The document is one that tomllib has read, so only what keeps statements apart must be known: strings,
+tomllib has read the document before, so it is valid. Only what separates statements matters here: strings,
 comments, brackets, line ends.
 """
 
@@ -28,12 +28,12 @@ KeyPath = tuple[str, ...]
 
 
 def key_lines(text: str) -> dict[KeyPath, int]:
-    """The line of each table and key, by its whole path: ``("plc", "press", "target")``.
+    """The line of each table and key, by its full path: ``("plc", "press", "target")``.
 
-    Keys within an inline table are not among them.
+    Keys in an inline table are not included.
 
     Args:
-        text: a document that tomllib reads.
+        text: a valid TOML document.
     """
     found: dict[KeyPath, int] = {}
     table: KeyPath = ()
@@ -51,7 +51,7 @@ def key_lines(text: str) -> dict[KeyPath, int]:
 
 
 def line_of(lines: dict[KeyPath, int], *path: str) -> int | None:
-    """The line of a key, or of the nearest table around it; None if none of them stands anywhere."""
+    """The line of a key, or of the innermost table around it that has a line; None if there is none."""
     while path:
         if path in lines:
             return lines[path]
@@ -60,7 +60,7 @@ def line_of(lines: dict[KeyPath, int], *path: str) -> int | None:
 
 
 def _statements(text: str) -> Iterator[tuple[int, str]]:
-    """Each table header and each key with its value: the line it begins at, and its text without comments."""
+    """Each table header and each key with its value: its first line, and its text without comments."""
     depth, line, began, parts = 0, 1, 1, list[str]()
     for piece in _TOKEN.findall(text + "\n"):
         if piece == "\n" and depth == 0:
@@ -77,7 +77,7 @@ def _statements(text: str) -> Iterator[tuple[int, str]]:
 
 
 def _path(key: str) -> KeyPath:
-    """A dotted key, taken apart by the one who knows how."""
+    """The parts of a dotted key; tomllib parses it."""
     found: Any = tomllib.loads(f"{key} = 0")
     path: KeyPath = ()
     while isinstance(found, dict):

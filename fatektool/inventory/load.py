@@ -1,4 +1,4 @@
-"""An inventory, read from its file."""
+"""Read an inventory from its file."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ MAX_INVENTORY: Final = 16 << 20
 
 
 def load_inventory(path: Path) -> Inventory:
-    """Read an inventory, and whatever is wrong with it.
+    """Read an inventory; faults are in its ``faults``.
 
     Raises:
-        UsageError: there is no such file.
-        DataError: it is far too large.
+        UsageError: the file does not exist or cannot be read.
+        DataError: it is larger than ``MAX_INVENTORY``.
     """
     return parse_inventory(read_bounded(path, MAX_INVENTORY), path)

@@ -1,4 +1,4 @@
-"""Which PLCs are meant: by name, by tag, by a pattern of names."""
+"""Select PLCs by name, by tag, or by a pattern of names."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ if TYPE_CHECKING:
 
 
 def select(inventory: Inventory, words: Iterable[str] = ()) -> list[PlcEntry]:
-    """The PLCs that one of the words means, in the file's order; without words all.
+    """The PLCs that match one of the words, in the order of the file; all if there are no words.
 
     Args:
         inventory: the PLCs.
         words: each a name, a tag or a glob of names: ``hall1-*``.
 
     Raises:
-        UsageError: a word means none, or there are no PLCs at all.
+        UsageError: a word matches no PLC, or the inventory is empty.
     """
     wanted = list(words)
     for word in wanted:

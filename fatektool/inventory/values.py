@@ -1,4 +1,4 @@
-"""The values of an inventory's keys: how each is checked, and the form in which a PLC has it."""
+"""Checks of the values in an inventory: from the value in TOML to the value of a PLC."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Take: TypeAlias = Callable[[object, Path], Any]
 """TOML's value and the file's folder -> a PLC's value. Raises ValueError, TypeError or UsageError."""
 
 EXPECTATIONS: Final = ("run", "stop", "any")
-"""The modes that a PLC may be expected to be in."""
+"""The values of ``expect``: the mode that ``check`` expects."""
 
 
 def _text(value: object, _: Path) -> str:
@@ -24,7 +24,7 @@ def _text(value: object, _: Path) -> str:
 
 
 def _target(value: object, folder: Path) -> str:
-    """A target, its path relative to the file's folder."""
+    """A target; a path in it is relative to the folder of the file."""
     target = Target.parse(_text(value, folder))
     if target.kind is TargetKind.SIM and target.path:
         return f"sim:{folder / target.path}"
@@ -36,7 +36,7 @@ def _target(value: object, folder: Path) -> str:
 def _path(value: object, folder: Path) -> Path:
     try:
         return folder / Path(_text(value, folder)).expanduser()
-    except RuntimeError as error:  # ~somebody, whom this computer does not know
+    except RuntimeError as error:  # ~name of an unknown user
         raise ValueError from error
 
 
@@ -62,7 +62,7 @@ def _whole(first: int, last: int) -> Callable[[object, Path], int]:
 def _seconds(first: float, last: float) -> Callable[[object, Path], float]:
     def take(value: object, _: Path) -> float:
         number = isinstance(value, int | float) and not isinstance(value, bool)
-        if not number or not first <= value <= last:  # type: ignore[operator]  # a number, as was looked at
+        if not number or not first <= value <= last:  # type: ignore[operator]  # it is a number
             raise ValueError
         return float(value)  # type: ignore[arg-type]  # the same
 
@@ -89,19 +89,19 @@ def _format(value: object, folder: Path) -> str:
 
 
 CHECKS: Final[dict[str, tuple[str, Take]]] = {
-    "target": ("a text such as tcp://192.168.2.3 or /dev/ttyUSB0", _target),
+    "target": ("a string such as tcp://192.168.2.3 or /dev/ttyUSB0", _target),
     "station": ("a whole number of 1 to 254, with modbus-tcp 0 or 255 too", _whole(0, 255)),
     "protocol": (f"one of {', '.join(PROTOCOLS)}", _one_of(tuple(PROTOCOLS))),
     "baud": ("a whole number of 50 to 4000000", _whole(50, 4_000_000)),
-    "format": ("a text such as 7E1", _format),
+    "format": ("a string such as 7E1", _format),
     "timeout_s": ("seconds, 0.001 to 3600", _seconds(0.001, 3600)),
     "retries": ("a whole number of 0 to 1000", _whole(0, 1000)),
     "lock_wait_s": ("seconds, 0 to 86400", _seconds(0, 86400)),
-    "tags": ("a list of texts", _tags),
+    "tags": ("a list of strings", _tags),
     "spec": ("the name of a file", _path),
     "reference": ("the name of a file", _path),
     "project": ("the name of a file", _path),
     "read_only": ("true or false", _flag),
     "expect": (f"one of {', '.join(EXPECTATIONS)}", _one_of(EXPECTATIONS)),
 }
-"""The keys of a PLC: what is expected, in words, and how it is read."""
+"""The keys of a PLC: the expected value in words, and its check."""

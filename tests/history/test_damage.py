@@ -49,8 +49,8 @@ def test_a_damaged_program(book: Book, data: bytes | None) -> None:
         book.history.show("press")
     assert book.history.show("press", "~1").backup == ONE
     found = book.record("press", THREE)[0]
-    assert found.subject == "press: backup again, the one before is damaged"
-    assert "could not be read" in found.warnings[0]
+    assert found.subject == "press: new backup, the previous one is damaged"
+    assert "the previous backup cannot be read" in found.warnings[0]
     assert book.history.show("press").backup == THREE
 
 
@@ -90,7 +90,7 @@ def test_a_damaged_commit_or_tree(book: Book, what: str, data: bytes | None) -> 
         lambda: list(book.history.log()),
         lambda: book.history.record("press", THREE),
     ):
-        with pytest.raises(DataError, match=r"see 'fatektool history check' and 'git fsck'"):
+        with pytest.raises(DataError, match=r"run 'fatektool history check' and 'git fsck'"):
             ask()
     assert (book.folder / "refs/heads/main").read_text(encoding="utf-8") == f"{tip}\n"
 
@@ -176,6 +176,6 @@ def test_what_is_no_history(tmp_path: Path, made: str | None) -> None:
         place.write_bytes(b"")
     elif made == "empty":
         place.mkdir()
-    with pytest.raises(FatektoolError, match=r"no history|no git repository") as raised:
+    with pytest.raises(FatektoolError, match=r"no history|not a git repository") as raised:
         check(place)
     assert raised.value.exit_code == (5 if made == "empty" else 2)

@@ -107,7 +107,7 @@ def test_a_remote_with_two_places(book: Book, nas: Path, tmp_path: Path, by: str
     for place in (nas, tmp_path / "other"):
         book.git("config", "--add", "remote.BOTH.pushurl", str(place))
     if by == "dulwich":
-        with pytest.raises(PushFailed, match="several pushurl, which git alone can push to"):
+        with pytest.raises(PushFailed, match="several pushurl: only the git program can push to these"):
             push(book.folder, "BOTH")
         return
     assert push(book.folder, "BOTH").remote == f"{nas}, {tmp_path / 'other'}"
@@ -129,9 +129,7 @@ def test_one_that_has_gone_another_way(book: Book, nas: Path, tmp_path: Path) ->
     before = git(nas, "rev-parse", "main")
     book.git("remote", "add", "--mirror=push", "NAS", str(nas))  # with git a mirror is forced
     for remote in (str(nas), "NAS"):
-        with pytest.raises(
-            PushFailed, match=r"has gone another way: its refs/heads/main .*nothing was pushed"
-        ):
+        with pytest.raises(PushFailed, match=r"has other commits: its refs/heads/main .*nothing was pushed"):
             push(book.folder, remote)
     assert git(nas, "rev-parse", "main") == before
     assert book.record("press", TWO)[0].revision
@@ -143,7 +141,7 @@ def test_one_that_is_ahead(book: Book, nas: Path, tmp_path: Path) -> None:
     git(tmp_path, "clone", "--quiet", "--bare", str(nas), "copy")
     Book(tmp_path / "copy").record("press", TWO)
     push(tmp_path / "copy", str(nas))
-    with pytest.raises(PushFailed, match="has gone another way"):
+    with pytest.raises(PushFailed, match="has other commits"):
         push(book.folder, str(nas))
 
 
@@ -168,13 +166,17 @@ def test_what_is_shown_of_a_remote(url: str, shown: str) -> None:
 @pytest.mark.parametrize(
     ("remote", "by_git", "by_dulwich"),
     [
-        ("nowhere", "there is no such folder; the history here is whole", "there is no such folder"),
+        (
+            "nowhere",
+            "the folder does not exist; the history on this computer is not affected",
+            "the folder does not exist",
+        ),
         ("git://127.0.0.1:1/x", "Connection refused", "expected a folder, http://"),
         ("http://user:secret@127.0.0.1:1/x", "unable to access 'http://127.0.0.1:1/x/'", "refused"),
         ("work", "branch is currently checked out", "it has a work tree, expected a bare repository"),
         ("work/.git", "branch is currently checked out", "it has a work tree, expected a bare repository"),
         (".", "does not appear to be a git repository; the history", "NotGitRepository"),
-        ("", "it names no place; the history here is whole", "it names no place"),
+        ("", "no remote is given; the history on this computer is not affected", "no remote is given"),
         ("a:b", "nossh: ", "FileNotFoundError"),
     ],
 )
@@ -202,9 +204,11 @@ def test_a_hook_that_forbids(book: Book, nas: Path, by: str) -> None:
         assert "[remote rejected] (pre-receive hook declined); remote: closed until Monday" in str(
             raised.value
         )
-        assert f"to see what git wants: git -C {book.folder} push {nas} refs/heads/main" in str(raised.value)
+        assert f"for git's own messages run: git -C {book.folder} push {nas} refs/heads/main" in str(
+            raised.value
+        )
     else:
-        assert "its hook pre-receive would not be run, which git alone can do" in str(raised.value)
+        assert "it has a hook, pre-receive, which only the git program can run" in str(raised.value)
     git(nas, "rev-parse", "--verify", "--quiet", "main", code=1)
     hook.chmod(0o600)
     assert push(book.folder, str(nas)).sent
@@ -318,7 +322,9 @@ def test_a_silent_one_is_ended_with_all_that_it_started(
     monkeypatch.setattr(bounded, "time", clock)
     monkeypatch.setattr(bounded, "_LOOK_S", 0.01)
     monkeypatch.setenv("GIT_SSH_COMMAND", str(ssh))
-    with pytest.raises(PushFailed, match="nothing was heard of git for 8 s; the history here is whole"):
+    with pytest.raises(
+        PushFailed, match="git wrote nothing for 8 s; the history on this computer is not affected"
+    ):
         push(book.folder, f"ssh://nas.invalid{nas}", timeout_s=2)
     process = int(started.read_text())
     while _runs(process):

@@ -124,7 +124,7 @@ def test_nobody_else_may_read_it(book: Book) -> None:
      "nul.x", "COM3", "x" * 65, "\ud800", "\u202ea", "*", "\U0001d4b3" * 64],
 )  # fmt: skip
 def test_what_is_no_name(book: Book, name: str) -> None:
-    with pytest.raises(UsageError, match="is no name for a PLC"):
+    with pytest.raises(UsageError, match="is not a valid name for a PLC"):
         book.history.record(name, ONE)
     assert not book.folder.exists()
 
@@ -161,7 +161,9 @@ def test_whatever_a_backup_is_called_git_takes_it(book: Book, target: str, tool:
 
 def test_names_that_differ_in_case_alone(book: Book) -> None:
     book.record("press", ONE)
-    with pytest.raises(UsageError, match=r"'PRESS' and 'press' of the history .* would share a file"):
+    with pytest.raises(
+        UsageError, match=r"'PRESS' differs only in case from 'press' in the history .* the same file"
+    ):
         book.history.record("PRESS", TWO)
 
 
@@ -172,7 +174,7 @@ def test_a_folder_with_other_things(book: Book) -> None:
     book.folder.mkdir()
     (book.folder / "holiday.jpg").write_bytes(b"")
     with pytest.raises(
-        UsageError, match=r"neither empty nor a bare git repository: 'holiday.jpg' lies there"
+        UsageError, match=r"neither empty nor a bare git repository: it contains 'holiday.jpg'"
     ):
         book.history.record("press", ONE)
     assert [path.name for path in book.folder.iterdir()] == ["holiday.jpg"]
@@ -204,7 +206,7 @@ def test_a_branch_that_git_holds(book: Book) -> None:
     book.record("press", ONE)
     lock = book.folder / "refs" / "heads" / "main.lock"
     lock.write_bytes(b"")
-    with pytest.raises(PortBusy, match=r"held by another git program: .*main.lock is there"):
+    with pytest.raises(PortBusy, match=r"locked by another git program: .*main.lock exists"):
         book.history.record("press", TWO)
     assert lock.exists()
     os.utime(lock, (NOON - DAY, NOON - DAY))  # whoever that was, it is long gone
@@ -346,12 +348,12 @@ def test_revisions(book: Book, revision: str, found: Backup) -> None:
         ("~3", "there is no revision press@~3"),
         ("HEAD~9", "there is no revision"),
         ("2026-11-21", "there is no revision"),
-        ("2026-02-30", "there is no such day"),
+        ("2026-02-30", "is not a valid date"),
         ("0000000", "there is no revision"),
-        ("abc", "is no revision: expected a hash"),
-        ("main", "is no revision"),
-        ("HEAD~x", "is no revision"),
-        ("--all", "is no revision"),
+        ("abc", "is not a revision: expected a hash"),
+        ("main", "is not a revision"),
+        ("HEAD~x", "is not a revision"),
+        ("--all", "is not a revision"),
     ],
 )
 def test_what_is_no_revision(book: Book, revision: str, message: str) -> None:

@@ -96,27 +96,27 @@ FAULTS = [
     ('[plc.p]\ntarget = "sim:"\ntimeout_s = true', "line 3: .*got True"),
     ('[plc.p]\ntarget = "sim:"\nformat = "9X1"', "line 3: plc.p: line format: expected data bits.*got '9X1'"),
     ('[plc.p]\ntarget = "sim:"\nprotocol = "s7"', "line 3: plc.p: protocol: expected one of facon, "),
-    ('[plc.p]\ntarget = "sim:"\ntags = ["a", 3]', "line 3: plc.p: tags: expected a list of texts"),
+    ('[plc.p]\ntarget = "sim:"\ntags = ["a", 3]', "line 3: plc.p: tags: expected a list of strings"),
     ('[plc.p]\ntarget = "sim:"\nread_only = 1', "line 3: plc.p: read_only: expected true or false, got 1"),
-    ('[plc.p]\ntarget = "sim:"\ntags = 3', "line 3: plc.p: tags: expected a list of texts, got 3"),
+    ('[plc.p]\ntarget = "sim:"\ntags = 3', "line 3: plc.p: tags: expected a list of strings, got 3"),
     ('[plc.p]\ntarget = "sim:"\nspec = ""', "line 3: plc.p: spec: expected the name of a file, got ''"),
-    ('[plc.p]\ntarget = "sim:"\nretries = ' + "9" * 5000, "no TOML: Exceeds the limit"),
+    ('[plc.p]\ntarget = "sim:"\nretries = ' + "9" * 5000, "not valid TOML: Exceeds the limit"),
     ('[plc.p]\ntarget = "sim:"\nretries = ' + "9" * 4000, "line 3: plc.p: retries: .*got 9999"),
-    ("[plc.p]\nstation = 2", 'line 1: p: expected target = "tcp://HOST" or another'),
+    ("[plc.p]\nstation = 2", 'line 1: p: target is missing: expected for example target = "tcp://HOST"'),
     ('[plc.p]\ntarget = "tcp://"', "line 2: plc.p: target 'tcp://': expected tcp://host:port"),
     ('[plc.p]\ntarget = "tcp://h"\nprotocol = "mseries"', "line 2: p: target 'tcp://h': expected a port"),
-    ("[plc.p]\ntarget = 3", "line 2: plc.p: target: expected a text such as"),
-    ('[plc.COM3]\ntarget = "sim:"', "line 1: a PLC's name: expected up to 64 letters.*got 'COM3'"),
-    ('[plc."a/b"]\ntarget = "sim:"', "line 1: a PLC's name: .*got 'a/b'"),
-    ('[plc.p]\ntarget = "sim:"\n[plc.P]\ntarget = "sim:"', "line 3: 'P' and 'p' would share files"),
+    ("[plc.p]\ntarget = 3", "line 2: plc.p: target: expected a string such as"),
+    ('[plc.COM3]\ntarget = "sim:"', "line 1: name of a PLC: expected up to 64 letters.*got 'COM3'"),
+    ('[plc."a/b"]\ntarget = "sim:"', "line 1: name of a PLC: .*got 'a/b'"),
+    ('[plc.p]\ntarget = "sim:"\n[plc.P]\ntarget = "sim:"', "line 3: 'P' differs only in case from 'p'"),
     ('[defaults]\nreference = "x"\n[plc.p]\ntarget = "sim:"', "line 2: defaults: unknown key 'reference'"),
     ('[plcs.p]\ntarget = "sim:"', "line 1: expected .defaults. and .plc.NAME. tables, got 'plcs'"),
     ("plc = 3", "line 1: plc: expected .plc.NAME. tables"),
     ("plc.p = 3", r"line 1: expected a table \[plc.p\]"),
     ("defaults = 3", r"line 1: expected a table \[defaults\]"),
     ('plc = {p = {target = "sim:", station = 999}}', "line 1: plc.p: station: "),
-    ("[plc.p\n", "line 1: no TOML: Expected"),
-    ('[plc.p]\ntarget = "sim:"\ntarget = "sim:"\n', "line 3: no TOML: Cannot overwrite"),
+    ("[plc.p\n", "line 1: not valid TOML: Expected"),
+    ('[plc.p]\ntarget = "sim:"\ntarget = "sim:"\n', "line 3: not valid TOML: Cannot overwrite"),
 ]  # fmt: skip
 
 
@@ -145,7 +145,7 @@ def test_all_faults_are_there_in_the_file_s_order() -> None:
 @pytest.mark.parametrize("data", [b"\xff\xfe", b"\0", b"a" * 100_000, b"[" * 20_000])
 def test_what_is_no_toml_at_all(data: bytes) -> None:
     (fault,) = parse_inventory(data, FILE).faults
-    assert fault.message.startswith("no TOML: ")
+    assert fault.message.startswith("not valid TOML: ")
 
 
 def test_a_file_from_windows() -> None:

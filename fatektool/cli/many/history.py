@@ -1,4 +1,4 @@
-"""``history``: the programs of many PLCs as they changed, in a git repository."""
+"""``history``: each version of the programs of many PLCs, in a git repository."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def history_option(function: F) -> F:
     @wraps(function)
     def with_history(*args: Any, folder: Path | None, **rest: Any) -> Any:
         if folder is None:
-            raise UsageError("no history named", hint="give --history DIR, or set FATEKTOOL_HISTORY")
+            raise UsageError("no history is given", hint="give --history DIR or set FATEKTOOL_HISTORY")
         return function(*args, folder=folder, **rest)
 
     return with_history  # type: ignore[return-value]  # click's decorators hand back what they get
@@ -67,12 +67,12 @@ def history_option(function: F) -> F:
 
 @click.group("history", epilog="Example: fatektool history log press-3 --history plc-history")
 def history_command() -> None:
-    """Programs as they changed: a git repository with a file for each PLC, and a commit for each change.
+    """Keep each version of the programs in a git repository: a file for each PLC, a commit for each change.
 
-    'fleet backup --history DIR' fills it, or 'history record'. Any git can read it: 'git log -p'.
+    'fleet backup --history DIR' and 'history record' write it. Any git can read it: 'git log -p'.
 
-    A revision REV is a hash (a1b2c3d), HEAD~2, a day or time (2026-11-22: the last of that day or before,
-    UTC), or ~1: this PLC's program before its last change, ~2 before the one before that.
+    A revision REV is a hash (a1b2c3d), HEAD~2, a date or time in UTC (2026-11-22: the last commit of that day
+    or before), or ~1: the program of this PLC before its last change; ~2: the one before that.
     """
 
 
@@ -82,7 +82,10 @@ def history_command() -> None:
 @click.argument("name")
 @click.argument("file", type=PATH)
 @click.option(
-    "--push", "remote", metavar="REMOTE", help="Then push: a folder, ssh://, https://, host:path, a remote."
+    "--push",
+    "remote",
+    metavar="REMOTE",
+    help="Then push to REMOTE: a folder, ssh://, https://, host:path, a git remote.",
 )
 @click.option(
     "--lock-wait",
@@ -97,7 +100,7 @@ def history_command() -> None:
 def record_command(
     name: str, file: Path, folder: Path, voice: Voice, *, remote: str | None, lock_wait: float
 ) -> None:
-    """Keep the backup FILE as the program of the PLC NAME, if its program changed. DIR is made if need be."""
+    """Record the backup FILE for the PLC NAME, if the program changed. DIR is created if it is missing."""
     backup = load_backup(file)
     found = History(folder, wait_s=lock_wait, waiting=voice.say).record(name, backup)
     for warning in found.warnings:
@@ -122,12 +125,12 @@ def record_command(
 @history_option
 @voice_options
 def log_command(name: str | None, folder: Path, voice: Voice, *, limit: int | None) -> None:
-    """List the changes, newest first: of the PLC NAME, or of all."""
+    """List the changes of the PLC NAME, or of all PLCs, newest first."""
     with closing(History(folder).log(name)) as changes:
         found = list(islice(changes, limit))
         more = next(changes, None) is not None
     if not found:
-        voice.say(f"{folder} holds no program yet")
+        voice.say(f"no program is recorded in {folder} yet")
     voice.show(log_document(found, folder, name, more=more), map(log_line, found))
 
 
@@ -138,7 +141,7 @@ def log_command(name: str | None, folder: Path, voice: Voice, *, limit: int | No
 @history_option
 @voice_options
 def show_command(which: str, folder: Path, voice: Voice) -> None:
-    """Show what the history holds of a PLC, now or at a revision, as 'inspect' does; then what changed."""
+    """Show the newest backup of a PLC, or that of a revision, as 'inspect' does; then what changed."""
     history = History(folder)
     found = history.show(*_parted(which))
     before = history.before(found)
@@ -161,9 +164,9 @@ def show_command(which: str, folder: Path, voice: Voice) -> None:
 @history_option
 @voice_options
 def diff_command(name: str, a: str, b: str, folder: Path, voice: Voice, *, report: Path | None) -> int:
-    """Compare a PLC's program at two revisions: exit 0 if it is the same, 1 if not.
+    """Compare the program of a PLC at two revisions: exit 0 if it is the same, 1 if not.
 
-    Without B it is that of now; without A too, the last change is shown.
+    B defaults to the newest revision, A to the one before the last change.
     """
     history = History(folder)
     one, other = history.show(name, a), history.show(name, b)
@@ -176,7 +179,7 @@ def diff_command(name: str, a: str, b: str, folder: Path, voice: Voice, *, repor
 @history_option
 @voice_options
 def check_command(folder: Path, voice: Voice) -> int:
-    """Look the whole history through: every object, every backup in it. Exit 0 if all is whole, 1 if not."""
+    """Check every object and every backup of the history: exit 0 if none is damaged, 1 if one is."""
     with voice.progress("commits") as bar:
         found = check(folder, bar.update)
     voice.show(check_document(found, folder), check_lines(found))
@@ -192,7 +195,7 @@ def check_command(folder: Path, voice: Voice) -> int:
 @history_option
 @voice_options
 def export_command(which: str, file: Path, folder: Path, voice: Voice, *, force: bool) -> None:
-    """Write a PLC's backup, of now or of a revision, to FILE for 'restore'; - is standard output."""
+    """Write a backup to FILE for 'restore': the newest of a PLC, or a revision's. - is standard output."""
     name, revision = _parted(which)
     history = History(folder)
     together("force", holds=not is_standard(file), needs="a file")
@@ -213,5 +216,5 @@ def export_command(which: str, file: Path, folder: Path, voice: Voice, *, force:
 def _parted(which: str) -> tuple[str, str]:
     name, at, revision = which.partition("@")
     if at and not revision:
-        raise UsageError(f"{which}: expected a revision behind the @, such as {name}@~1 or {name}@2026-11-22")
+        raise UsageError(f"{which}: expected a revision after the @, such as {name}@~1 or {name}@2026-11-22")
     return name, revision or "HEAD"

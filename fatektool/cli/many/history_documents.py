@@ -1,4 +1,4 @@
-"""What the ``history`` commands print, as documents and as lines."""
+"""The output of the ``history`` commands, as documents and as lines."""
 
 from __future__ import annotations
 
@@ -43,14 +43,14 @@ def record_document(
 
 
 def record_rows(found: RecordResult, folder: Path, pushed: Pushed | None) -> Iterator[tuple[str, object]]:
-    """What became of a backup."""
+    """The result of a recording."""
     if found.revision is None:
-        yield "unchanged", f"{found.name}: {folder} holds this program already"
+        yield "unchanged", f"{found.name}: the newest program in {folder} is the same"
     else:
         yield "recorded", found.subject
         yield "revision", found.revision
     if pushed is not None:
-        yield "pushed", pushed.remote if pushed.sent else f"{pushed.remote} has it all already"
+        yield "pushed", pushed.remote if pushed.sent else f"{pushed.remote} is up to date"
 
 
 def log_document(found: Sequence[LogEntry], folder: Path, name: str | None, *, more: bool) -> dict[str, Any]:
@@ -75,10 +75,10 @@ def log_document(found: Sequence[LogEntry], folder: Path, name: str | None, *, m
 
 
 def log_line(change: LogEntry) -> str:
-    """One change; a commit that somebody else made is told with the PLC's name."""
+    """One change; the PLC's name is put before the subject of a commit that fatektool did not make."""
     subject = change.commit.subject
     named = subject if subject.startswith(f"{change.name}: ") else f"{change.name}: {subject}"
-    removed = " (taken out)" if change.removed else ""
+    removed = " (removed)" if change.removed else ""
     return f"{change.commit.revision[:SHORT]}  {utc(change.commit.time)}  {named}{removed}"
 
 
@@ -135,12 +135,16 @@ def check_document(found: HistoryCheck, folder: Path) -> dict[str, Any]:
 
 
 def check_lines(found: HistoryCheck) -> Iterator[str]:
-    """What was looked through, and what does not hold."""
+    """What was checked, and what is damaged."""
     commits, programs = count(found.commits, "commit"), count(found.programs, "program")
     looked = f"{commits}, {programs}, {count(len(found.names), 'PLC')} now"
-    yield f"damaged: {count(len(found.faults), 'fault')} in {looked}" if found.faults else f"whole: {looked}"
+    yield (
+        f"damaged: {count(len(found.faults), 'fault')} in {looked}"
+        if found.faults
+        else f"no damage: {looked}"
+    )
     if found.shallow:
-        yield "a shallow clone: what came before is not in it; 'git fetch --unshallow' brings it"
+        yield "a shallow clone: older commits are missing; 'git fetch --unshallow' gets them"
     for fault in found.faults:
         yield f"  {_place(fault)}{fault.message}"
 

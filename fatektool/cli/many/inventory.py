@@ -1,4 +1,4 @@
-"""``inventory``: the file that names the PLCs."""
+"""``inventory``: the file with the names and settings of the PLCs."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _MAX_SCAN: Final = 4 << 20
 def inventory_command() -> None:
     """Check, list and extend the inventory: the TOML file that names your PLCs.
 
-    'fatektool status -p NAME' and all other commands find a PLC by its name in it.
+    All commands take a name of the inventory as a target: 'fatektool status -p NAME'.
     """
 
 
@@ -41,7 +41,7 @@ def inventory_command() -> None:
 @inventory_option
 @voice_options
 def check_command(inventory: Path | None, voice: Voice) -> int:
-    """Say all that is wrong with the inventory, by line: exit 0 if nothing is, 1 if something is."""
+    """Print each fault of the inventory with its line: exit 0 if there is none, 1 if there is one."""
     path = inventory_path(inventory)
     if path is None:
         raise no_inventory()
@@ -54,12 +54,12 @@ def check_command(inventory: Path | None, voice: Voice) -> int:
         "faults": [{"line": fault.line, "message": fault.message} for fault in found.faults],
     }
     lines = [f"{path}: {fault}" for fault in found.faults]
-    voice.show(document, lines or [f"{path}: {len(found.plcs)} PLCs, nothing is wrong"])
+    voice.show(document, lines or [f"{path}: {len(found.plcs)} PLCs, no faults"])
     return 1 if found.faults else 0
 
 
 def _faults_of_files(found: Inventory) -> Iterator[InventoryFault]:
-    """What is wrong with the files that the PLCs name; each file is told of once."""
+    """The faults of the files that the inventory names; each file is checked once."""
     from fatektool.jobs.snapshots.spec import load_spec
     from fatektool.project.program_file import load_program
 
@@ -83,7 +83,7 @@ def _faults_of_files(found: Inventory) -> Iterator[InventoryFault]:
 @inventory_option
 @voice_options
 def list_command(inventory: Path | None, words: tuple[str, ...], voice: Voice) -> None:
-    """List the PLCs of the inventory, with all that is said of them."""
+    """List the PLCs of the inventory with their settings."""
     found = open_inventory(inventory)
     entries = select(found, words)
     document = {
@@ -127,10 +127,12 @@ def _rows(entries: list[PlcEntry]) -> Iterator[str]:
     epilog="Example: fatektool scan -p /dev/ttyUSB0 --json | fatektool inventory add hall1 --from -",
 )
 @click.argument("name")
-@click.option("--from", "scan", type=PATH, metavar="FILE|-", help="What 'scan --json' found: each station.")
-@click.option("-p", "--port", "target", metavar="TARGET", help="Where the PLC is.")
-@click.option("-s", "--station", type=click.IntRange(0, 255), help="Its station.  [default: 1]")
-@click.option("--protocol", type=click.Choice(list(PROTOCOLS)), help="What it speaks.")
+@click.option(
+    "--from", "scan", type=PATH, metavar="FILE|-", help="Output of 'scan --json': add each station."
+)
+@click.option("-p", "--port", "target", metavar="TARGET", help="Target of the PLC.")
+@click.option("-s", "--station", type=click.IntRange(0, 255), help="Station number.  [default: 1]")
+@click.option("--protocol", type=click.Choice(list(PROTOCOLS)), help="Protocol of the PLC.")
 @click.option("--baud", type=int, help="Speed of the serial line.")
 @click.option("--format", "line_format", metavar="7E1", help="Data bits, parity, stop bits.")
 @click.option("--tag", "tags", multiple=True, help="A word for --select; repeat for more.")
@@ -149,10 +151,10 @@ def add_command(
     tags: tuple[str, ...],
     inventory: Path | None,
 ) -> None:
-    """Add a PLC under NAME, or all that a scan found under NAME-1, NAME-2 and so on, by station.
+    """Add a PLC as NAME, or the PLCs that a scan found as NAME-1, NAME-2 and so on, by station.
 
-    They come to the end of the inventory, all or none of them; what is in the file stays as it is. Without an
-    inventory one is begun in the present folder. A station of a scan that has a name already is left out.
+    They are appended to the inventory, all or none; the rest of the file is not changed. If there is none,
+    fatek.toml is created in the current folder. Stations that are in the inventory already are skipped.
     """
     path = inventory_path(inventory) or Path(FILE_NAME)
     data = read_bounded(path, MAX_INVENTORY) if path.exists() else b""
@@ -160,18 +162,28 @@ def add_command(
     given = {key: value for key, value in options.items() if value is not None}
     if scan is not None:
         apart(
-            "scan", "target", "station", "protocol", "baud", "line_format", why="the scan says where PLCs are"
+            "scan",
+            "target",
+            "station",
+            "protocol",
+            "baud",
+            "line_format",
+            why="the scan has target and settings",
         )
         wanted = _scanned(scan, name)
     else:
         if target is None:
-            raise UsageError("no PLC named", hint="give --port TARGET, or --from FILE with what a scan found")
+            raise UsageError(
+                "no PLC is given", hint="give --port TARGET, or --from FILE with the output of a scan"
+            )
         wanted = {name: {"target": target, **given}}
     added = []
     known = _known(data, path) if scan is not None else set()
     for each, values in wanted.items():
         if scan is not None and (values["target"], values["station"]) in known:
-            voice.say(f"station {values['station']} on {values['target']} is there already")
+            voice.say(
+                f"skipped station {values['station']} on {values['target']}: it is in the inventory already"
+            )
             continue
         data = with_plc(data, path, each, values | ({"tags": list(tags)} if tags else {}))
         added.append(each)
@@ -189,11 +201,11 @@ def _known(data: bytes, path: Path) -> set[tuple[str, int]]:
 
 
 def _scanned(scan: Path, name: str) -> dict[str, dict[str, Any]]:
-    """The stations of a scan's document, each once, by the names they get.
+    """The stations in the output of a scan, each once, by their new names.
 
     Raises:
-        DataError: it is none.
-        UsageError: nobody was found.
+        DataError: it is not the output of a scan.
+        UsageError: the scan found no PLC.
     """
     data = read_bounded(scan, _MAX_SCAN)
     try:
@@ -213,7 +225,9 @@ def _scanned(scan: Path, name: str) -> dict[str, dict[str, Any]]:
     if schema != "fatektool.scan/1":
         raise DataError(f"{scan}: expected schema 'fatektool.scan/1', got {schema!r:.80}")
     if not stations:
-        raise UsageError(f"{scan}: the scan found no PLC", hint="see its own words for what to try")
+        raise UsageError(
+            f"{scan}: the scan found no PLC", hint="scan again without --json to see what to try"
+        )
     if len(stations) == 1:
         return {name: next(iter(stations.values()))}
     return {f"{name}-{number}": values for number, values in stations.items()}

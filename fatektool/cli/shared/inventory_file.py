@@ -1,4 +1,4 @@
-"""Where the command line looks for the inventory, and the names in it."""
+"""The inventory on the command line: which file it is, and names as targets."""
 
 from __future__ import annotations
 
@@ -26,24 +26,24 @@ inventory_option = click.option(
     type=FilePath(),
     envvar="FATEKTOOL_INVENTORY",
     metavar="FILE.toml",
-    help=f"Where names of PLCs stand; by default ./{FILE_NAME}, else that in your configuration folder.  "
+    help=f"The file with the names of PLCs.  [default: ./{FILE_NAME}, then your configuration folder]  "
     "[env: FATEKTOOL_INVENTORY]",
 )
 
 
 def inventory_path(named: Path | None) -> Path | None:
-    """The inventory's file: as named, else in the present folder, else the user's own; None for none."""
+    """The file of the inventory: as given, else in the current folder, else the user's; or None."""
     from pathlib import Path
 
     return find_inventory(named, (Path(FILE_NAME), Path(click.get_app_dir("fatektool")) / FILE_NAME))
 
 
 def open_inventory(named: Path | None) -> Inventory:
-    """The inventory, whole.
+    """Read the inventory, which must have no faults.
 
     Raises:
         UsageError: there is none.
-        DataError: something in it does not hold.
+        DataError: it has faults.
     """
     path = inventory_path(named)
     if path is None:
@@ -60,11 +60,11 @@ def _whole(path: Path) -> Inventory:
 
 
 def plc_named(word: str, named: Path | None) -> PlcEntry | None:
-    """The PLC of the inventory that ``--port`` means; None if it means a port.
+    """The PLC of the inventory that ``--port`` names; None if it is a port.
 
     Raises:
-        UsageError: it can only be a name, and is none.
-        DataError: something in the inventory does not hold.
+        UsageError: it can only be a name, and is not in the inventory.
+        DataError: the inventory has faults.
     """
     if not may_be_name(word):
         return None
@@ -78,7 +78,7 @@ def plc_named(word: str, named: Path | None) -> PlcEntry | None:
 
 
 def complete_target(context: click.Context, _: click.Parameter, incomplete: str) -> list[CompletionItem]:
-    """The names that begin so; else files, as a port is one on most systems."""
+    """Completion: names that begin with this; else files, because a port is a file on most systems."""
     from pathlib import Path
 
     from click.shell_completion import CompletionItem
@@ -89,7 +89,7 @@ def complete_target(context: click.Context, _: click.Parameter, incomplete: str)
 
 
 def complete_names(named: Path | None, incomplete: str) -> list[CompletionItem]:
-    """The names that begin so, with what they stand for; none if the inventory cannot be read."""
+    """Completion: names that begin with this, with their targets; none if the inventory cannot be read."""
     from click.shell_completion import CompletionItem
 
     from fatektool.inventory.load import load_inventory
@@ -97,7 +97,7 @@ def complete_names(named: Path | None, incomplete: str) -> list[CompletionItem]:
     try:
         path = inventory_path(named)
         found = None if path is None else load_inventory(path)
-    except FatektoolError:  # no place for a message: the command itself will tell
+    except FatektoolError:  # completion shows no messages; the command will
         return []
     plcs = () if found is None else found.plcs.values()
     return [

@@ -1,10 +1,10 @@
 """A copy of the history in another repository: a folder, or what ssh or http(s) reaches.
 
-Where a git program is, that pushes: it knows the user's settings, keys and helpers, a remote's ``pushurl``,
-and runs the hooks of both sides. Where there is none, dulwich does: see ``by_dulwich`` for what that cannot.
+If there is a git program, it pushes: it uses the user's settings, keys and helpers and the ``pushurl`` of a
+remote, and runs the hooks of both sides. If there is none, dulwich pushes: see ``by_dulwich`` for its limits.
 
-Nothing is ever forced: a copy that has gone another way is named, and left as it is. No question is asked and
-no wait is without an end, as this runs by night.
+Nothing is ever forced: a copy with other commits is reported and not changed. No question is asked and every
+wait has a limit, because this runs at night.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _TIMEOUT_S: Final = 30.0
 
 
 def push(folder: Path, remote: str, *, timeout_s: float = _TIMEOUT_S) -> Pushed:
-    """Give another repository all that this one has and it has not.
+    """Push the history to another repository.
 
     Args:
         folder: the history.
@@ -33,12 +33,12 @@ def push(folder: Path, remote: str, *, timeout_s: float = _TIMEOUT_S) -> Pushed:
         timeout_s: for each answer of a server, in seconds.
 
     Raises:
-        PushFailed: it is not there, refuses, or has gone another way; the history here is as it was.
-        UsageError: there is no history here.
-        DataError: the history here is damaged.
+        PushFailed: the remote cannot be reached, refuses, or has other commits; the history is not changed.
+        UsageError: there is no history in the folder.
+        DataError: the history is damaged.
     """
     if not remote:
-        raise failed("''", "it names no place", "name a folder, ssh://HOST/PATH, HOST:PATH or https://…")
+        raise failed("''", "no remote is given", "give a folder, ssh://HOST/PATH, HOST:PATH or https://…")
     program = shutil.which("git")
     with Repository(folder) as repository:
         if program is not None:

@@ -1,4 +1,4 @@
-"""A program that is not waited for without an end, and cannot ask anybody anything."""
+"""Run a program with a limit of time and without a terminal, so that it cannot ask for input."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ _OWN_GROUP: Final = getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0) | getattr
 
 
 class Ended(NamedTuple):
-    """What a program left.
+    """The result of a program.
 
     Attributes:
-        code: its exit code; None if it was ended because nothing was heard of it.
+        code: its exit code; None if it was ended because it wrote nothing for too long.
         out: what it wrote to stdout.
         err: what it wrote to stderr.
     """
@@ -35,12 +35,12 @@ class Ended(NamedTuple):
 
 
 def run_bounded(command: Sequence[str], environment: Mapping[str, str], silence_s: float) -> Ended:
-    """Run a program without a terminal, and end it with all that it started if it falls silent.
+    """Run a program without a terminal. End it and its children if it writes nothing for too long.
 
-    What it writes goes to files: a pipe would be held open by what it leaves in the background.
+    Its output goes to files: a child in the background would keep a pipe open.
 
     Args:
-        command: the program and its words.
+        command: the program and its arguments.
         environment: all of its environment.
         silence_s: how long it may write nothing, in seconds.
 
@@ -48,7 +48,7 @@ def run_bounded(command: Sequence[str], environment: Mapping[str, str], silence_
         OSError: it cannot be started.
     """
     with TemporaryFile() as out, TemporaryFile() as err:
-        process = subprocess.Popen(  # noqa: S603  # git, and words that it takes for no command of a shell
+        process = subprocess.Popen(  # noqa: S603  # git, and no shell
             command, stdin=subprocess.DEVNULL, stdout=out, stderr=err, env=dict(environment),
             start_new_session=True, creationflags=_OWN_GROUP,
         )  # fmt: skip
@@ -78,7 +78,7 @@ def _wait(process: subprocess.Popen[bytes], files: tuple[int, int], silence_s: f
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:
-    """End it, and what it started: kindly first, so that git takes its lock files away."""
+    """End it and its children: by SIGTERM first, so that git deletes its lock files."""
     if process.poll() is not None:
         return
     _signal(process, signal.SIGTERM)

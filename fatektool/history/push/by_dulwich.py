@@ -1,8 +1,8 @@
-"""A push by dulwich, where there is no git program.
+"""Push with dulwich, if there is no git program.
 
-What git does and this does not: hooks (a repository on this computer that has some is refused, as one of them
-may be there to forbid), ``insteadOf``, ``credential.helper``, several ``pushurl`` of one remote. What is the
-same: ``pushurl``, paths relative to the history, GIT_SSH_COMMAND, ``core.sshCommand``, GIT_SSH, no force, no
+Not supported, unlike git: hooks (a repository with hooks on this computer is refused, because one of them may
+forbid the push), ``insteadOf``, ``credential.helper``, several ``pushurl`` of one remote. As in git:
+``pushurl``, paths relative to the history, GIT_SSH_COMMAND, ``core.sshCommand``, GIT_SSH. No force, no
 question, a limit of time for each answer.
 """
 
@@ -21,9 +21,9 @@ from dulwich.refs import Ref
 from dulwich.repo import Repo
 
 from fatektool.errors import FatektoolError
-from fatektool.history.push.outcome import Pushed, failed, gone_another_way, without_secrets
+from fatektool.history.push.outcome import Pushed, diverged, failed, without_secrets
 from fatektool.history.push.place import URL, folder_of, is_bare, let_head_name
-from fatektool.history.repository import let_go
+from fatektool.history.repository import release
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from fatektool.history.repository import Repository
 
 _SCHEMES: Final = ("http", "https", "ssh", "git+ssh")
-_NEXT: Final = "there is no git program here: with one, its own push is used"
+_NEXT: Final = "install git: then its own push is used"
 
 
 def push_by_dulwich(repository: Repository, remote: str, timeout_s: float) -> Pushed:
@@ -49,7 +49,7 @@ def push_by_dulwich(repository: Repository, remote: str, timeout_s: float) -> Pu
         timeout_s: see ``push``.
 
     Raises:
-        PushFailed: it is not there, refuses, has gone another way, or needs what git alone can do.
+        PushFailed: the remote cannot be reached, refuses, has other commits, or needs git.
     """
     tip, branch = repository.tip(), Ref(repository.branch().encode())
     place, base = _configured(repository, remote)
@@ -65,9 +65,9 @@ def push_by_dulwich(repository: Repository, remote: str, timeout_s: float) -> Pu
                 client.pool_manager.clear()
     except FatektoolError:
         raise
-    except Exception as error:  # ssh, http, sockets, dulwich: each fails with errors of its own
+    except Exception as error:  # ssh, http, sockets, dulwich: each has its own errors
         reason = _reason(error)
-        let_go(error)
+        release(error)
         raise _failed(shown, reason) from error
     if isinstance(client, LocalGitClient):
         let_head_name(Path(path), branch)
@@ -75,7 +75,7 @@ def push_by_dulwich(repository: Repository, remote: str, timeout_s: float) -> Pu
 
 
 def _send(repository: Repository, way: tuple[GitClient, str], shown: str, branch: Ref, new: ObjectID) -> bool:
-    """Send what is not there; False if all is."""
+    """Send what is missing there; False if nothing is."""
     client, path = way
     had: list[ObjectID | None] = []
 
@@ -83,7 +83,7 @@ def _send(repository: Repository, way: tuple[GitClient, str], shown: str, branch
         old = refs.get(branch)
         had.append(old)
         if old is not None and not _leads_to(repository, old, new):
-            raise gone_another_way(shown, branch.decode(), repository.folder)
+            raise diverged(shown, branch.decode(), repository.folder)
         return {branch: new}
 
     def pack(
@@ -112,14 +112,14 @@ def _reason(error: Exception) -> str:
 
 
 def _configured(repository: Repository, remote: str) -> tuple[str, Path]:
-    """The place itself, or that of a remote of this name, and what a relative path is relative to."""
+    """The remote itself or the URL of the remote of this name, and the base of a relative path."""
     section = (b"remote", remote.encode())
-    with repository.door("config"):
+    with repository.guard("config"):
         config = repository.git.get_config()
         for name in (b"pushurl", b"url"):
             places = _all(config, section, name)
             if len(places) > 1 and name == b"pushurl":
-                raise _failed(remote, "it has several pushurl, which git alone can push to")
+                raise _failed(remote, "it has several pushurl: only the git program can push to these")
             if places:
                 return places[0], repository.folder
     return remote, Path()
@@ -135,18 +135,18 @@ def _all(config: Config, section: tuple[bytes, bytes], name: bytes) -> list[str]
 def _leads_to(repository: Repository, old: ObjectID, new: ObjectID) -> bool:
     if old == new:
         return True
-    with repository.door("the commits"):
+    with repository.guard("the commits"):
         try:
             return can_fast_forward(repository.git, old, new)
-        except KeyError:  # a commit that is not in here
+        except KeyError:  # a commit that is not in the history
             return False
 
 
 def _client(repository: Repository, place: str, base: Path, timeout_s: float) -> tuple[GitClient, str]:
-    """Who carries it there, and the path at that place.
+    """The client of dulwich for the remote, and the path there.
 
     Raises:
-        PushFailed: it is no place that can be pushed to.
+        PushFailed: it is not a remote that can be pushed to.
     """
     folder = folder_of(place, base)
     if folder is not None:
@@ -159,14 +159,14 @@ def _client(repository: Repository, place: str, base: Path, timeout_s: float) ->
     config = repository.git.get_config_stack()
     patience = ConfigFile()
     patience.set((b"http",), b"timeout", str(timeout_s).encode())
-    config.backends.append(patience)  # the last one: what the user has set goes before it
+    config.backends.append(patience)  # the last one: the user's settings take precedence
     return get_transport_and_path(
         place, config=config, operation="push", ssh_command=_ssh(repository, timeout_s)
     )
 
 
 def _ssh(repository: Repository, timeout_s: float) -> str:
-    """The user's own ssh, in git's order, or one that asks nothing."""
+    """The user's ssh command, looked up in git's order; else ssh without questions."""
     named = os.environ.get("GIT_SSH_COMMAND")
     if named:
         return named
@@ -180,20 +180,20 @@ def _ssh(repository: Repository, timeout_s: float) -> str:
 
 
 def _local(place: str, folder: Path) -> str:
-    """A folder with a bare repository without hooks: one with a work tree would have an old one then."""
+    """A folder with a bare repository without hooks. A work tree would not be updated by the push."""
     if not folder.is_dir():
-        raise failed(place, "there is no such folder", f"make one: git init --bare {shlex.quote(place)}")
-    with Repo(str(folder)) as found:  # raises what its message names, if it is none
+        raise failed(place, "the folder does not exist", f"create it: git init --bare {shlex.quote(place)}")
+    with Repo(str(folder)) as found:  # raises if it is not a repository
         if not is_bare(found):
             raise _failed(place, "it has a work tree, expected a bare repository ('git init --bare')")
         hooks = _hooks(found)
     if hooks:
-        raise _failed(place, f"its hook {hooks[0]} would not be run, which git alone can do")
+        raise _failed(place, f"it has a hook, {hooks[0]}, which only the git program can run")
     return str(folder)
 
 
 def _hooks(found: Repo) -> list[str]:
-    """The hooks that a push would run."""
+    """The hooks that a push with git would run."""
     try:
         named = found.get_config_stack().get((b"core",), b"hooksPath").decode()
     except KeyError:

@@ -1,4 +1,4 @@
-"""A push by the git program: ``git push`` without a question and without force.
+"""Push with the git program: ``git push`` without questions and without force.
 
 ::
 
@@ -8,8 +8,8 @@
     stderr  remote: closed until Monday
             error: failed to push some refs to '../nas'
 
-Paths on the command line are relative to where the user is; those of the configuration are relative to the
-history, as git takes them.
+Paths on the command line are relative to the current folder; those in the configuration are relative to the
+history, as in git.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Final
 from dulwich.refs import Ref
 
 from fatektool.history.push.bounded import Ended, run_bounded
-from fatektool.history.push.outcome import Pushed, failed, gone_another_way, without_secrets
+from fatektool.history.push.outcome import Pushed, diverged, failed, without_secrets
 from fatektool.history.push.place import folder_of, let_head_name
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from fatektool.errors import PushFailed
     from fatektool.history.repository import Repository
 
-# Of another repository, if this runs in one of its hooks; and a window that would ask for a password.
+# They name another repository if this runs in one of its hooks. SSH_ASKPASS opens a window for a password.
 _NOT_OURS: Final = {
     *(
         "GIT_DIR",
@@ -44,17 +44,15 @@ _NOT_OURS: Final = {
     ),
     *("GIT_ALTERNATE_OBJECT_DIRECTORIES", "GIT_QUARANTINE_PATH", "GIT_PREFIX", "SSH_ASKPASS"),
 }
-_NOTHING_ASKED: Final = {
+_NO_QUESTIONS: Final = {
     "GIT_TERMINAL_PROMPT": "0",
     "GCM_INTERACTIVE": "never",
     "SSH_ASKPASS_REQUIRE": "never",
-    "LANGUAGE": "en",  # its words stand in messages beside ours
+    "LANGUAGE": "en",  # messages quote git
 }
-_SILENCES: Final = (
-    4  # git may work on what it has, and hooks on what they got, between one answer and the next
-)
-_ANOTHER_WAY: Final = re.compile(r"\[rejected\] \((fetch first|non-fast-forward)\)")
-_UNSAID: Final = re.compile(
+_SILENCES: Final = 4  # between two outputs git may compute, and hooks may run
+_DIVERGED: Final = re.compile(r"\[rejected\] \((fetch first|non-fast-forward)\)")
+_NOISE: Final = re.compile(
     r"(remote: )?(Enumerating|Counting|Compressing|Writing|Resolving|Unpacking|Checking) [\w ]+:"
     r"|(remote: )?Total \d|Delta compression|hint:|To |Done$|remote: *$"
     r"|fatal: Could not read from remote repository"
@@ -73,7 +71,7 @@ def push_by_git(program: str, repository: Repository, remote: str, timeout_s: fl
         timeout_s: see ``push``.
 
     Raises:
-        PushFailed: git could not, or was silent for too long.
+        PushFailed: git failed, or wrote nothing for too long.
     """
     return _Push(program, repository, timeout_s).to(remote)
 
@@ -86,7 +84,7 @@ class _Push:
         self.timeout_s = timeout_s
         self.git = (program, "-C", str(self.folder), "--git-dir=.")
         self.environment = {name: text for name, text in os.environ.items() if name not in _NOT_OURS}
-        self.environment |= _NOTHING_ASKED
+        self.environment |= _NO_QUESTIONS
 
     def to(self, remote: str) -> Pushed:
         tip = self.repository.tip()
@@ -97,13 +95,13 @@ class _Push:
         for place, path in zip(places, local, strict=True):
             if path is not None and not path.is_dir():
                 raise failed(
-                    place, "there is no such folder", f"make one: git init --bare {shlex.quote(place)}"
+                    place, "the folder does not exist", f"create it: git init --bare {shlex.quote(place)}"
                 )
         if tip is None:
             return Pushed(shown, None, sent=False)
         if not named and local[0] is not None and "://" not in remote:
             remote = str(local[0])
-        self._let_ssh_ask_nothing()
+        self._set_ssh_command()
         words = ["push", "--porcelain", "--progress", "--", remote, f"{tip}:{self.branch}"]
         ended = self._run(remote, *settings, *words, silence_s=_SILENCES * self.timeout_s)
         if ended.code != 0:
@@ -114,15 +112,15 @@ class _Push:
         return Pushed(shown, tip, sent=any(flag != "=" for flag, _ in _results(ended.out)))
 
     def _named(self, remote: str) -> tuple[list[str], list[str]]:
-        """Settings for git, and the places of a remote that has this name; no places if none has."""
+        """Settings for git, and the URLs of the remote of this name; none if there is no such remote."""
         found = self._run(remote, "remote", "get-url", "--push", "--all", "--", remote)
         if found.code != 0:
             return [], []
-        # A mirror takes no branch, and would be forced.
+        # To a mirror git cannot push one branch, and it would force.
         return ["-c", f"remote.{remote}.mirror=false"], found.out.splitlines()
 
-    def _let_ssh_ask_nothing(self) -> None:
-        """Unless the user has an ssh of his own."""
+    def _set_ssh_command(self) -> None:
+        """Set an ssh command without questions, unless the user has set one."""
         if {"GIT_SSH_COMMAND", "GIT_SSH"} & self.environment.keys():
             return
         if self._run("", "config", "--get", "core.sshCommand").code != 0:
@@ -136,32 +134,32 @@ class _Push:
             ended = run_bounded((*self.git, *words), self.environment, silence_s)
         except OSError as error:
             raise failed(
-                remote, f"git cannot be started: {error.strerror}", "see that 'git --version' works"
+                remote, f"git cannot be started: {error.strerror}", "check that 'git --version' works"
             ) from error
         if ended.code is None:
             said = _words(ended.err)
             raise failed(
                 remote,
-                f"nothing was heard of git for {silence_s:.0f} s" + (f" after: {said}" if said else ""),
+                f"git wrote nothing for {silence_s:.0f} s" + (f" after: {said}" if said else ""),
                 self._by_hand(remote),
             )
         return ended
 
     def _error(self, shown: str, remote: str, ended: Ended) -> PushFailed:
         refused = [summary for flag, summary in _results(ended.out) if flag == "!"]
-        if any(map(_ANOTHER_WAY.search, refused)):
-            return gone_another_way(shown, self.branch, self.folder)
+        if any(map(_DIVERGED.search, refused)):
+            return diverged(shown, self.branch, self.folder)
         reasons = [*refused, _words(ended.err)] if refused else [_words(ended.err)]
         reason = "; ".join(filter(None, reasons)) or f"git ended with {ended.code}"
         return failed(shown, reason, self._by_hand(remote))
 
     def _by_hand(self, remote: str) -> str:
         words = ["git", "-C", str(self.folder), "push", without_secrets(remote), self.branch]
-        return f"to see what git wants: {shlex.join(words)}"
+        return f"for git's own messages run: {shlex.join(words)}"
 
 
 def _results(out: str) -> Iterator[tuple[str, str]]:
-    """What git says of the branch, for each place: a flag and a summary."""
+    """The result for the branch, for each URL: a flag and a summary."""
     for line in out.splitlines():
         flag, *rest = line.split("\t")
         if len(rest) == 2 and len(flag) == 1:  # flag, from:to, summary
@@ -169,7 +167,7 @@ def _results(out: str) -> Iterator[tuple[str, str]]:
 
 
 def _words(err: str) -> str:
-    """What git, ssh and the other side say, without progress and advice, in one line."""
+    """The messages of git, ssh and the server in one line, without progress and advice."""
     lines = [line.strip() for line in re.split(r"[\r\n]+", err)]
-    said = [re.sub(r"\x1b\[[0-9;]*[A-Za-z]", "", line) for line in lines if line and not _UNSAID.match(line)]
+    said = [re.sub(r"\x1b\[[0-9;]*[A-Za-z]", "", line) for line in lines if line and not _NOISE.match(line)]
     return " / ".join(said).rstrip(".")[:_MOST]

@@ -1,4 +1,4 @@
-"""What becomes of a push."""
+"""The result of a push, and its errors."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 _LOGIN: Final = re.compile(r"(\w*)://([^/@:\s]*)(?::[^/@\s]*)?@")
-_WHOLE: Final = "the history here is whole, and the next push brings all of it"
+_SAFE: Final = "the history on this computer is not affected; the next push includes everything"
 
 
 @dataclass(frozen=True, slots=True)
 class Pushed:
-    """What became of a push.
+    """The result of a push.
 
     Attributes:
-        remote: where to, without what may be a secret.
+        remote: the remote, without passwords.
         revision: the newest commit there now, 40 hex digits; None if there is nothing to push yet.
-        sent: False if it had all already.
+        sent: False if the remote was up to date.
     """
 
     remote: str
@@ -31,31 +31,31 @@ class Pushed:
 
 
 def without_secrets(text: str) -> str:
-    """A text whose URLs name no password, and no user but that of ssh: elsewhere that may be a token."""
+    """The text without passwords in its URLs, and without users but those of ssh: a user may be a token."""
     return _LOGIN.sub(lambda url: f"ssh://{url[2]}@" if url[1] == "ssh" else f"{url[1]}://", text)
 
 
 def failed(remote: str, reason: str, next_step: str) -> PushFailed:
-    """The error for a push that did not work.
+    """The error for a push that failed.
 
     Args:
-        remote: where to.
-        reason: what happened; in one line.
+        remote: the remote.
+        reason: what happened, in one line.
         next_step: what the user can do.
     """
     shown = without_secrets(remote)
     return PushFailed(
         f"could not push to {shown}: {without_secrets(reason)}",
-        hint=f"{_WHOLE}; {next_step}",
+        hint=f"{_SAFE}; {next_step}",
         remote=shown,
     )
 
 
-def gone_another_way(remote: str, branch: str, folder: Path) -> PushFailed:
-    """The error for a copy with commits that the history does not come from."""
+def diverged(remote: str, branch: str, folder: Path) -> PushFailed:
+    """The error for a remote with commits that are not in the history."""
     shown = without_secrets(remote)
     return PushFailed(
-        f"{shown} has gone another way: its {branch} has commits that {folder} does not come from",
-        hint="nothing was pushed or lost; see with git what it holds, or push to an empty one",
+        f"{shown} has other commits: its {branch} has commits that are not in {folder}",
+        hint="nothing was pushed or lost; examine the remote with git, or push to an empty repository",
         remote=shown,
     )

@@ -1,4 +1,4 @@
-"""Where a push goes: the folder that a place on this computer is, and what can be said of it beforehand."""
+"""The destination of a push: is it a folder on this computer, and is it a bare repository?"""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ _SCP: Final = re.compile(r"[^/\\:]{2,}:" if os.name == "nt" else "[^/:]+:")  # h
 
 
 def folder_of(place: str, base: Path) -> Path | None:
-    """The folder that a place means; None if it is not on this computer.
+    """The folder of a destination; None if it is not on this computer.
 
     Args:
-        place: as the user or git's configuration names it; a ``file:`` URL may have ``%20`` in it.
-        base: what a relative path is relative to.
+        place: as the user or git's configuration gives it; a ``file:`` URL may have ``%20`` in it.
+        base: the folder that a relative path starts from.
     """
     url = URL.match(place)
     if url is not None:
@@ -40,7 +40,7 @@ def folder_of(place: str, base: Path) -> Path | None:
 
 
 def is_bare(found: Repo) -> bool:
-    """True for a repository without a work tree; the ``.git`` of one that has such a tree is none."""
+    """True for a repository without a work tree; the ``.git`` folder of a work tree is not bare."""
     try:
         return bool(found.bare and found.get_config().get_boolean((b"core",), b"bare", default=True))
     except ValueError:
@@ -48,9 +48,9 @@ def is_bare(found: Repo) -> bool:
 
 
 def let_head_name(path: Path, branch: Ref) -> None:
-    """Let HEAD of a new bare repository name the branch that came, or a clone of it would be empty.
+    """Let HEAD of a new bare repository name the pushed branch: a clone of it would be empty otherwise.
 
-    What was pushed is there all the same if this cannot be done.
+    If this fails, the push is complete all the same.
     """
     with contextlib.suppress(Exception), Repo(str(path)) as found:
         if is_bare(found) and found.refs.follow(HEADREF)[1] is None:

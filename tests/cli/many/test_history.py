@@ -32,7 +32,7 @@ def test_record(cli: Cli, book: Book) -> None:
     first = cli("history", "record", "press", "one.json", "--json").document("history-record")
     assert (first["changed"], first["pages_differ"], first["push"]) == (True, None, None)
     again = cli("history", "record", "press", "one.json")
-    assert again == (0, "unchanged  press: plc-history holds this program already\n", "")
+    assert again == (0, "unchanged  press: the newest program in plc-history is the same\n", "")
     document = cli("history", "record", "press", "one.json", "--json").document("history-record")
     assert (document["changed"], document["revision"], document["words_differ"]) == (False, None, 0)
     done = cli("history", "record", "press", "two.json")
@@ -46,12 +46,13 @@ def test_record_and_push(cli: Cli, book: Book) -> None:
     done = cli("history", "record", "press", "one.json", "--push", "nas", "--json")
     assert done.document("history-record")["push"]["sent"] is True
     done = cli("history", "record", "press", "one.json", "--push", "nas")
-    assert done.out.splitlines()[1] == "pushed     nas has it all already"
+    assert done.out.splitlines()[1] == "pushed     nas is up to date"
     failed = cli("history", "record", "press", "two.json", "--push", "nowhere")
     assert failed.code == 3
     assert failed.out.startswith("recorded  press: 2 words in 2 pages changed\n")
-    assert "could not push to nowhere: there is no such folder; the history here is whole" in one_line(
-        failed.err
+    assert (
+        "could not push to nowhere: the folder does not exist; the history on this computer is not affected"
+        in one_line(failed.err)
     )
     failed = cli("history", "record", "saw", "two.json", "--push", "nowhere", "--json")
     error = failed.document("error")["error"]
@@ -64,7 +65,7 @@ def test_a_damaged_file_is_warned_of(filled: Cli, book: Book) -> None:
     (book.folder / "objects" / sha[:2] / sha[2:]).write_bytes(b"")
     done = filled("history", "record", "press", "one.json")
     assert done.code == 0
-    assert done.err.startswith("warning: the backup before could not be read: plc-history: object")
+    assert done.err.startswith("warning: the previous backup cannot be read: plc-history: object")
 
 
 def test_log(filled: Cli) -> None:
@@ -83,7 +84,7 @@ def test_log(filled: Cli) -> None:
 
 def test_log_of_a_history_that_begins(cli: Cli, book: Book) -> None:
     git(book.folder.parent, "init", "--quiet", "--bare", str(book.folder))
-    assert cli("history", "log") == (0, "", "plc-history holds no program yet\n")
+    assert cli("history", "log") == (0, "", "no program is recorded in plc-history yet\n")
 
 
 def test_show(filled: Cli) -> None:
@@ -110,7 +111,7 @@ def test_diff(filled: Cli, book: Book) -> None:
 
 
 def test_check(filled: Cli, book: Book) -> None:
-    assert filled("history", "check") == (0, "whole: 3 commits, 2 programs, 2 PLCs now\n", "")
+    assert filled("history", "check") == (0, "no damage: 3 commits, 2 programs, 2 PLCs now\n", "")
     assert filled("history", "check", "--json").document("history-check")["whole"] is True
     sha = book.git("rev-parse", "HEAD:press.json").strip()
     (book.folder / "objects" / sha[:2] / sha[2:]).unlink()
@@ -142,22 +143,22 @@ def test_export_to_stdout(filled: Cli) -> None:
     [
         (2, "log nope", "no PLC 'nope' in the history plc-history"),
         (2, "show pres", "did you mean press"),
-        (2, "show press@", "expected a revision behind the @"),
-        (2, "show press@yesterday", "'yesterday' is no revision"),
+        (2, "show press@", "expected a revision after the @"),
+        (2, "show press@yesterday", "'yesterday' is not a revision"),
         (2, "diff press ~7", "there is no revision press@~7"),
         (2, "log -n 0", "0 is not in the range"),
-        (2, "log --history nope", "there is no history nope; the first"),
-        (2, "record ../x one.json", "'../x' is no name for a PLC"),
+        (2, "log --history nope", "there is no history nope; 'fatektool history record' creates it"),
+        (2, "record ../x one.json", "'../x' is not a valid name for a PLC"),
         (
             2,
             "record x one.json --history .",
-            "neither empty nor a bare git repository: 'bad.json' lies there",
+            "neither empty nor a bare git repository: it contains 'bad.json'",
         ),
         (2, "record x none.json", "cannot read none.json: No such file"),
         (2, "export press one.json", "one.json exists already"),
         (2, "export press no/x.json", "no is no folder"),
         (2, "frobnicate", "No such command 'frobnicate'"),
-        (5, "check --history .", ". is no git repository"),
+        (5, "check --history .", ". is not a git repository"),
         (5, "record x bad.json", "bad.json: not a backup file"),
         (5, "show press --history work", "has a work tree: expected a bare repository"),
     ],
@@ -176,7 +177,7 @@ def test_errors(filled: Cli, book: Book, code: int, words: str, message: str) ->
 
 def test_no_history_named(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("FATEKTOOL_HISTORY")
-    assert "no history named; give --history DIR, or set FATEKTOOL_HISTORY" in cli("history", "log").err
+    assert "no history is given; give --history DIR or set FATEKTOOL_HISTORY" in cli("history", "log").err
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs a POSIX shell")

@@ -26,7 +26,7 @@ def text() -> str:
 
 def test_check(cli: Cli) -> None:
     Path("fatek.toml").write_text(PRESS)
-    assert cli("inventory", "check") == (0, "fatek.toml: 1 PLCs, nothing is wrong\n", "")
+    assert cli("inventory", "check") == (0, "fatek.toml: 1 PLCs, no faults\n", "")
     Path("fatek.toml").write_text(PRESS + "x = 1\n[plc.q]\n")
     done = cli("inventory", "check")
     assert done.code == 1
@@ -34,7 +34,7 @@ def test_check(cli: Cli) -> None:
     keys += "station, tags, target, timeout_s"
     assert done.out.splitlines() == [
         f"fatek.toml: line 5: plc.press: unknown key 'x': expected one of {keys}",
-        'fatek.toml: line 6: q: expected target = "tcp://HOST" or another',
+        'fatek.toml: line 6: q: target is missing: expected for example target = "tcp://HOST"',
     ]
     document = cli("inventory", "check", "--json").document("inventory-check")
     assert [fault["line"] for fault in document["faults"]] == [5, 6]
@@ -55,7 +55,7 @@ def test_no_inventory(cli: Cli) -> None:
     for words in ("inventory check", "inventory list", "fleet status"):
         done = cli(*words.split())
         assert done.code == 2
-        assert "no inventory found; name one with --inventory or FATEKTOOL_INVENTORY" in done.err
+        assert "no inventory found; give --inventory FILE, set FATEKTOOL_INVENTORY" in done.err
 
 
 def test_list(cli: Cli) -> None:
@@ -111,12 +111,12 @@ def umask() -> int:
 @pytest.mark.parametrize(
     ("words", "code", "message"),
     [
-        ("press -p sim:", 2, "'press' is in the inventory fatek.toml already; choose another name"),
-        ("PRESS -p sim:", 2, "'PRESS' cannot be added: 'PRESS' and 'press' would share files"),
-        ("COM3 -p sim:", 2, "cannot be added: a PLC's name: expected"),
+        ("press -p sim:", 2, "'press' is already in the inventory fatek.toml; choose another name"),
+        ("PRESS -p sim:", 2, "'PRESS' cannot be added: 'PRESS' differs only in case from 'press'"),
+        ("COM3 -p sim:", 2, "cannot be added: name of a PLC: expected"),
         ("x -p tcp://", 2, "'x' cannot be added: plc.x: target 'tcp://': expected"),
         ("x -p sim: --baud 9", 2, "'x' cannot be added: plc.x: baud: expected a whole number of 50"),
-        ("x", 2, "no PLC named; give --port TARGET, or --from FILE"),
+        ("x", 2, "no PLC is given; give --port TARGET, or --from FILE"),
         ("x --from s.json -p sim:", 2, "--from does not go with --port"),
         ("x --from no.json", 2, "cannot read no.json"),
         ("x --from fatek.toml", 5, "fatek.toml: not what 'fatektool scan --json' prints"),
@@ -165,8 +165,8 @@ def test_add_many_from_a_scan_all_or_none(cli: Cli) -> None:
     done = cli("inventory", "add", "hall", "--from", "s.json")
     assert (done.code, done.out) == (0, "")
     assert done.err.splitlines() == [
-        "station 3 on /dev/ttyUSB0 is there already",
-        "station 9 on /dev/ttyUSB0 is there already",
+        "skipped station 3 on /dev/ttyUSB0: it is in the inventory already",
+        "skipped station 9 on /dev/ttyUSB0: it is in the inventory already",
     ]
     Path("s.json").write_text(scanned(3, 8).replace("ttyUSB0", "ttyUSB1"))
     assert cli("inventory", "add", "hall", "--from", "s.json").code == 2  # hall-3 is taken
