@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
@@ -9,11 +10,12 @@ from fatektool.ladder.forms import Form, Shape
 from fatektool.ladder.operands import character
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from fatektool.ladder.operands import Operand
 
 _KEY: Final = 0x55
+_OPERAND: Final = re.compile(r"\{([0-9]+)")
 
 
 def print_function(form: Form, free: int, operands: Sequence[Operand]) -> str:
@@ -24,18 +26,34 @@ def print_function(form: Form, free: int, operands: Sequence[Operand]) -> str:
         free: what stands in the free bits of its first word.
         operands: its operands, named.
     """
+    return " ".join(text for text, _ in function_words(form, free, operands))
+
+
+def function_words(
+    form: Form, free: int, operands: Sequence[Operand]
+) -> Iterator[tuple[str, tuple[Operand, ...]]]:
+    """The same, word by word, each with the operands that stand in it.
+
+    Args:
+        form: its row.
+        free: what stands in the free bits of its first word.
+        operands: its operands, named.
+    """
     nibble = (form.fixed[0] | free) & 0x0F if form.shape is Shape.FUNCTION else 0
     pulse = f"{nibble:X}" in form.pulse
-    return form.text.format(
-        *_with_key_in_hex(operands),
-        P="P" if pulse else "",
-        D="D" if nibble & 2 else "",
-        brackets=_brackets(operands, pulse=pulse),
-        one=nibble & 1,
-        two=nibble & 3,
-        three=nibble & 7,
-        char=character(free >> 8) if free >> 8 else "",
-    )
+    shown = _with_key_in_hex(operands)
+    for word in form.text.split(" "):
+        text = word.format(
+            *shown,
+            P="P" if pulse else "",
+            D="D" if nibble & 2 else "",
+            brackets=_brackets(operands, pulse=pulse),
+            one=nibble & 1,
+            two=nibble & 3,
+            three=nibble & 7,
+            char=character(free >> 8) if free >> 8 else "",
+        )
+        yield text, tuple(shown[int(number)] for number in _OPERAND.findall(word))
 
 
 def _brackets(operands: Sequence[Operand], *, pulse: bool) -> str:

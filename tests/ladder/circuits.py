@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from fatektool.ladder.networks import Network
 
 WORDS = {vector.text: vector.words for vector in (*READ, *PRINTED)}
-"""The words of every text that a vector has."""
+"""The words of every text that a vector has, and of a few more."""
+WORDS |= {"OUT TR 1": (0x01C4,), "LD TR 1": (0x0164,), "AND NOT M3": (0x1398,), "LD X0": (0x0060,)}
 
 
 def words_of(*texts: str) -> tuple[int, ...]:

@@ -7,24 +7,23 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fatektool.cli.programs.differences import beside
 from fatektool.cli.programs.documents import listing_document
+from fatektool.cli.programs.listing_view import ladder_lines, listing_lines
 from fatektool.cli.programs.program_files import comments_beside, comments_options, program_file, warn_of_code
 from fatektool.cli.shared.inventory_file import inventory_option
 from fatektool.cli.shared.options import PATH, voice_options
+from fatektool.cli.shared.pairs import apart
 from fatektool.cli.shared.report import report_option, write_report
 from fatektool.errors import UsageError
 from fatektool.files.times import utc
-from fatektool.project.comments import text_in
 from fatektool.project.program_file import NO_COMMENTS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Sequence
     from pathlib import Path
 
     from fatektool.cli.shared.output import Voice
     from fatektool.ladder.networks import Network
-    from fatektool.project.comments import Comments
 
 
 @dataclass(frozen=True)
@@ -56,6 +55,7 @@ class NetworkRange:
     "--network", "wanted", multiple=True, metavar="N|N-M", help="Only these networks; several times."
 )
 @click.option("--words", is_flag=True, help="Show words, and no comments unless named.")
+@click.option("--ladder", is_flag=True, help="Draw the networks, as wide as the terminal.")
 @comments_options
 @inventory_option
 @report_option
@@ -66,6 +66,7 @@ def listing_command(
     *,
     wanted: tuple[str, ...],
     words: bool,
+    ladder: bool,
     comments: Path | None,
     encoding: str | None,
     inventory: Path | None,
@@ -76,7 +77,11 @@ def listing_command(
     What is not the vendor's own word has ~ before it; what is not known stands there in hex behind ??. A
     project's comments stand beside its elements; with --words they are left out, so that it can be sent to
     somebody, unless --comments names them.
+
+    --ladder draws each network, with the comments under the elements. A wire that ends with a number goes on
+    below at the same number.
     """
+    apart("ladder", "words", "as_json", why="a drawing has no words; --report draws into a page")
     ranges = [NetworkRange.parse(text) for text in wanted]
     found = program_file(file, voice, encoding)
     texts = comments_beside(found, comments, inventory, voice, encoding)
@@ -88,7 +93,8 @@ def listing_command(
         from fatektool.report.listing import listing_report
 
         write_report(report, listing_report(document, time=utc()))
-    voice.show(document, listing_lines(networks, in_lines, words=words))
+    lines = ladder_lines(networks, texts) if ladder else listing_lines(networks, in_lines, words=words)
+    voice.show(document, lines)
 
 
 def _chosen(networks: Sequence[Network], ranges: Sequence[NetworkRange]) -> list[Network]:
@@ -106,23 +112,3 @@ def _chosen(networks: Sequence[Network], ranges: Sequence[NetworkRange]) -> list
     return [
         network for network in networks if any(each.first <= network.number <= each.last for each in ranges)
     ]
-
-
-def listing_lines(networks: Sequence[Network], comments: Comments, *, words: bool) -> Iterator[str]:
-    """The listing for people: a heading a network, a line an instruction."""
-    for network in networks:
-        unit = text_in(network.addresses, comments.units)
-        if unit:
-            yield f"unit {unit}"
-        yield f"{network.name}  {text_in(network.addresses, comments.networks) or ''}".rstrip()
-        yield from _instruction_lines(network, comments.elements, words=words)
-
-
-def _instruction_lines(network: Network, comments: Mapping[str, str], *, words: bool) -> Iterator[str]:
-    for number, _, instruction in network.places:
-        if not instruction.text and not words:  # drawing that the vendor's program does not print
-            continue
-        shown = f"{' '.join(f'{each:04X}' for each in instruction.words):<19}  " if words else ""
-        remark = beside(instruction.elements, comments)
-        line = f"{instruction.text:<28}  {remark}" if remark else instruction.text
-        yield f"  {number:04}  {shown}{line}".rstrip()

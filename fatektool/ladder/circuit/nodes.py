@@ -25,7 +25,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
-from fatektool.ladder.addresses import DRAWING, STORES, bit_name
+from fatektool.ladder.addresses import DRAWING, OUTPUTS, STORES, bit_name
 from fatektool.ladder.circuit.roles import Role, role_of
 
 if TYPE_CHECKING:
@@ -85,6 +85,13 @@ class Leaf:
         bit = self.instruction.bit
         assert bit is not None  # noqa: S101  # asked of such leaves alone
         return bit - STORES.start
+
+    @property
+    def output(self) -> int:
+        """The n of ``FO n``."""
+        bit = self.instruction.bit
+        assert bit is not None  # noqa: S101  # asked of such leaves alone
+        return bit - OUTPUTS.start
 
     @property
     def _is_drawing(self) -> bool:

@@ -97,6 +97,8 @@ APART = [
     ("watch R0 -p sim:", "--spec a.toml", ""),
     ("loopback -p sim:", "--raw 02,03", "--station 2"),
     ("loopback -p sim:", "--raw 02,03", "--protocol mseries"),
+    ("listing old.json", "--ladder", "--words"),
+    ("listing old.json", "--ladder", "--json"),
     ("scan -p sim:", "--baud 9600", "--bauds 9600"),
     ("scan", "--network 127.0.0.1", "--port sim:"),
     ("scan", "--network 127.0.0.1", "--stations 1-3"),

@@ -1,0 +1,1 @@
+"""A plan in characters, for a terminal or a file."""

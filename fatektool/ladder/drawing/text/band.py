@@ -1,0 +1,150 @@
+"""One band of a sheet in lines of text.
+
+::
+
+            names                  the edge of a box
+    wire ───┤ ├────────────────────┤EN  S:0
+            comments               the box goes on, and ends
+
+A row of the plan takes one line for its wire, those above and below that are needed, and no more. The place
+where a column begins is a column of characters for itself, so that links and edges of boxes never meet.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fatektool.ladder.drawing.text.bands import MARK, Cut
+from fatektool.ladder.drawing.text.canvas import Canvas, Pen
+from fatektool.ladder.drawing.text.letters import centred, width_of
+
+if TYPE_CHECKING:
+    from fatektool.ladder.drawing.plan import BoxCell, Cell, Link
+    from fatektool.ladder.drawing.text.cells import BoxText, SignText
+    from fatektool.ladder.drawing.text.sheet import Sheet
+
+
+class Band:
+    """The columns between two cuts.
+
+    Args:
+        sheet: the sheet.
+        begin: the first cut.
+        end: the second.
+        number: of the first wire that is cut at the first.
+        pen: what it is drawn with.
+    """
+
+    def __init__(self, sheet: Sheet, begin: Cut, end: Cut, number: int, pen: Pen) -> None:
+        self._begin, self._end, self._number, self._pen = begin, end, number, pen
+        self._columns = range(begin.column, end.column)
+        self._signs = [(cell, text) for cell, text in sheet.signs if cell.column in self._columns]
+        self._boxes = [(box, text) for box, text in sheet.boxes if box.column in self._columns]
+        self._wires = [
+            (wire.row, max(wire.first, begin.column), min(wire.end, end.column))
+            for wire in sheet.plan.wires
+            if wire.first < end.column and wire.end > begin.column
+        ]
+        self._links = [link for link in sheet.plan.links if self._has(link)]
+        self._rail = sorted(sheet.plan.begins) if begin.column == 0 else []
+        at = MARK if begin.column else 0
+        self._at = {begin.column: at}
+        for column in self._columns:
+            at += 1 + sheet.rooms[column]
+            self._at[column + 1] = at
+        self._line_of: dict[int, int] = {}
+        self._height = self._lay_rows()
+
+    def lines(self) -> list[str]:
+        """What is drawn."""
+        canvas = Canvas(self._pen)
+        for row, first, end in self._wires:
+            canvas.across(self._line_of[row], self._at[first], self._at[end])
+        for link in self._links:
+            canvas.down(self._at[link.column], self._line_of[link.first], self._line_of[link.last])
+        for cell, sign in self._signs:
+            self._draw_sign(canvas, cell, sign)
+        for box, text in self._boxes:
+            self._draw_box(canvas, box, text)
+        self._draw_ends(canvas)
+        return canvas.lines()
+
+    def _has(self, link: Link) -> bool:
+        if link.column == self._end.column:
+            return self._end.links_before
+        if link.column == self._begin.column:
+            return not self._begin.links_before
+        return link.column in self._columns
+
+    def _lay_rows(self) -> int:
+        """Give each row a line for its wire; give the number of lines in all."""
+        above: set[int] = {cell.row for cell, sign in self._signs if sign.name}
+        above |= {box.row for box, _ in self._boxes}
+        rows = above | {cell.row for cell, _ in self._signs} | {row for row, _, _ in self._wires}
+        rows |= {row for link in self._links for row in (link.first, link.last)}
+        rows |= {*self._begin.rows, *self._end.rows}
+        for box, _ in self._boxes:
+            rows |= {pin.row for pin in (*box.inputs, *box.outputs)} | {box.row + box.rows - 1}
+        line = 0
+        for row in sorted(rows):
+            line += row in above
+            self._line_of[row] = line
+            below = max((len(sign.below) for cell, sign in self._signs if cell.row == row), default=0)
+            for box, text in self._boxes:
+                if box.row + box.rows - 1 == row:
+                    below = max(below, self._foot(box, text) - line)
+            line += 1 + below
+        return line
+
+    def _foot(self, box: BoxCell, text: BoxText) -> int:
+        """The line of a box's lower edge."""
+        last = self._line_of[box.row + box.rows - 1]
+        return max(last + 1, self._line_of[box.row] + len(text.settings))
+
+    def _draw_sign(self, canvas: Canvas, cell: Cell, sign: SignText) -> None:
+        line, left, right = self._line_of[cell.row], self._at[cell.column], self._at[cell.column + 1]
+        room = right - left - 1
+        shown = centred(sign.sign, room)
+        start = left + 1 + len(shown) - len(shown.lstrip()) if sign.sign.strip() else left + 1
+        canvas.across(line, left, start if cell.ends else right)
+        middle = left + 1 + (room - width_of(sign.sign)) // 2
+        canvas.write(line, middle, sign.sign)
+        if sign.name:
+            canvas.write(line - 1, left + 1 + (room - width_of(sign.name)) // 2, sign.name)
+        for number, text in enumerate(sign.below, 1):
+            canvas.write(line + number, left + 1 + (room - width_of(text)) // 2, text)
+
+    def _draw_box(self, canvas: Canvas, box: BoxCell, text: BoxText) -> None:
+        left, right = self._at[box.column] + 1, self._at[box.column + 1] - 1
+        top, foot = self._line_of[box.row] - 1, self._foot(box, text)
+        for line in (top, foot):
+            canvas.across(line, left, right)
+        for column in (left, right):
+            canvas.down(column, top, foot)
+        canvas.write(top, left + 2, text.title)
+        for number, setting in enumerate(text.settings):
+            canvas.write(top + 1 + number, left + 2 + text.before, setting)
+        for pin, name in zip(box.inputs, text.inputs, strict=True):
+            canvas.write(self._line_of[pin.row], left + 1, name)
+            if pin.net is not None:
+                canvas.across(self._line_of[pin.row], left - 1, left)
+        for pin, name in zip(box.outputs, text.outputs, strict=True):
+            canvas.write(self._line_of[pin.row], right - width_of(name), name)
+            if pin.net is not None:
+                canvas.across(self._line_of[pin.row], right, right + 1)
+
+    def _draw_ends(self, canvas: Canvas) -> None:
+        """The rail, and the marks of wires that were cut."""
+        if self._begin.column == 0:
+            canvas.rail(self._height)
+            for row in self._rail:
+                if row in self._line_of:
+                    canvas.across(self._line_of[row], 0, 1)
+        for number, row in enumerate(self._begin.rows, self._number):
+            mark = f"{number:>{MARK - 2}}{self._pen.onward}"
+            canvas.across(self._line_of[row], MARK - 1, MARK)
+            canvas.write(self._line_of[row], MARK - 1 - len(mark), mark)
+        after = self._at[self._end.column]
+        for number, row in enumerate(self._end.rows, self._number + len(self._begin.rows)):
+            canvas.across(self._line_of[row], after, after + 1)
+            canvas.write(self._line_of[row], after + 1, f"{self._pen.onward}{number}")

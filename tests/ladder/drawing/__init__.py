@@ -1,0 +1,1 @@
+"""Circuits drawn: where the parts stand, and in text."""

@@ -1,0 +1,136 @@
+"""A plan says what its circuit says, and its characters join what the plan joins."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from fatektool.ladder.circuit.nodes import Circuit, Leaf
+from fatektool.ladder.circuit.reading import circuit_of
+from fatektool.ladder.circuit.roles import Role
+from fatektool.ladder.circuit.writing import instructions_of
+from fatektool.ladder.drawing.layout import aligned, plan_of
+from fatektool.ladder.drawing.plan import RAIL, Net, Plan
+from fatektool.ladder.drawing.text.bands import cuts_of
+from fatektool.ladder.drawing.text.canvas import Pen
+from fatektool.ladder.drawing.text.cells import Writer
+from fatektool.ladder.drawing.text.letters import Letters
+from fatektool.ladder.drawing.text.sheet import Sheet
+from tests.ladder.circuits import circuits, coded
+from tests.ladder.drawing.wiring import RAIL_END, by_characters, by_plan
+from tests.ladder.meaning import by_circuit
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from tests.ladder.drawing.wiring import Terminal
+
+
+def numbered(circuit: Circuit) -> Circuit:
+    """The same with a number for each instruction."""
+    (network,) = coded(instructions_of(circuit))
+    found = circuit_of(network)
+    assert isinstance(found, Circuit)
+    return found
+
+
+CIRCUITS = circuits().map(numbered)
+
+
+@given(CIRCUITS)
+def test_each_instruction_that_shows_stands_in_the_plan_once(circuit: Circuit) -> None:
+    plan = plan_of(circuit)
+    there = [cell.leaf.number for cell in plan.cells] + [box.leaf.number for box in plan.boxes]
+    assert len(there) == len(set(there))
+    hidden = {Role.AND_BLOCK, Role.OR_BLOCK, Role.OUTPUT, Role.MARK, Role.STORE, Role.RECALL}
+    must = {leaf.number for leaf in circuit.leaves if leaf.role not in hidden and not leaf.is_wire}
+    gaps = {leaf.number for leaf in circuit.leaves if leaf.is_gap}
+    assert must - gaps <= set(there)
+
+
+@given(CIRCUITS)
+def test_nothing_stands_on_anything_else(circuit: Circuit) -> None:
+    for plan in (plan_of(circuit), aligned(plan_of(circuit))):
+        places = [(cell.row, cell.column) for cell in plan.cells]
+        places += [(wire.row, column) for wire in plan.wires for column in range(wire.first, wire.end)]
+        places += [(row, box.column) for box in plan.boxes for row in range(box.row, box.row + box.rows)]
+        assert len(places) == len(set(places))
+
+
+@given(CIRCUITS)
+def test_what_is_joined_is_what_carries_the_same(circuit: Circuit) -> None:
+    """Wires that meet have one net; a branch of wire makes one of what is before it and behind it."""
+    assume(not any(leaf.is_wire for leaf in circuit.leaves))
+    for plan in (plan_of(circuit), aligned(plan_of(circuit))):
+        carried = nets_of(plan)
+        for joined in by_plan(plan):
+            assert len({carried[terminal] for terminal in joined if terminal in carried}) <= 1
+
+
+def nets_of(plan: Plan) -> dict[Terminal, Net]:
+    """What the plan says that each place carries."""
+    found: dict[Terminal, Net] = {RAIL_END: RAIL}
+    for cell in plan.cells:
+        found[cell.leaf.number, "left"] = cell.net
+    for box in plan.boxes:
+        for side, pins in (("input", box.inputs), ("output", box.outputs)):
+            for pin in pins:
+                if pin.net is not None:
+                    found[box.leaf.number, f"{side} {pin.number} {pin.row}"] = pin.net
+    return found
+
+
+@given(CIRCUITS, st.integers(0))
+def test_a_plan_does_what_its_circuit_does(circuit: Circuit, states: int) -> None:
+    """By its nets alone: a leaf carries on what leads to it, if it conducts."""
+    assume(all(not leaf.instruction.text.endswith("INV") for leaf in circuit.leaves))
+
+    def state(leaf: Leaf) -> bool:
+        return leaf.is_wire or (bool(states >> leaf.number & 1) and not leaf.is_gap)
+
+    assert by_nets(circuit, plan_of(circuit), state) == by_circuit(circuit, state)
+
+
+def by_nets(
+    circuit: Circuit, plan: Plan, state: Callable[[Leaf], bool]
+) -> list[tuple[int, tuple[bool, ...]]]:
+    """What each coil and function gets."""
+    cells = {cell.leaf.number: cell for cell in plan.cells}
+    boxes = {box.leaf.number: box for box in plan.boxes}
+    carried: dict[int, bool] = {}
+    stores: dict[int, bool] = {}
+    found = []
+
+    def power_of(net: Net | None) -> bool:
+        return net is not None and (net == RAIL or any(carried[number] for number in net))
+
+    for leaf in circuit.leaves:
+        if leaf.number in boxes:
+            pins = boxes[leaf.number].inputs
+            found.append((leaf.number, tuple(power_of(pin.net) for pin in pins)))
+        elif leaf.role is Role.OUTPUT:
+            carried[leaf.number] = state(leaf)
+        elif leaf.number in cells:
+            power = power_of(cells[leaf.number].net)
+            if leaf.role is Role.COIL:
+                found.append((leaf.number, (power,)))
+            elif leaf.role is Role.STORE:
+                stores[leaf.store] = power
+            elif leaf.role is Role.RECALL:
+                power = power and stores[leaf.store]
+            else:
+                power = power and state(leaf)
+            carried[leaf.number] = power
+    return found
+
+
+@given(CIRCUITS, st.integers(40, 300))
+def test_the_characters_join_what_the_plan_joins(circuit: Circuit, columns: int) -> None:
+    plan = plan_of(circuit)
+    for each in (plan, aligned(plan)):
+        sheet = Sheet(each, Writer(Pen(Letters()), {}, 60))
+        cuts = list(pairwise(cuts_of(each, sheet.rooms, columns)))
+        assert by_characters(sheet, cuts) == by_plan(each)
