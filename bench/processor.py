@@ -31,7 +31,7 @@ sys.path.insert(0, str(Path(__file__).parent.parent))
 from common import pinned, simulator
 
 from fatektool import connect
-from fatektool.exchange.batch import ask_all
+from fatektool.exchange.batch import read_all
 from fatektool.protocol.commands import ReadPage, ReadRegisters
 from fatektool.protocol.elements import Element
 from fatektool.protocol.fatek.facon.codec import FACON
@@ -170,7 +170,7 @@ def tool_loop(name: str, target: str, count: int) -> float:
     with connect(target, protocol=codec.name) as plc:
         plc.brief_status()
         began = time.perf_counter()
-        ask_all(plc.link, [request] * count)
+        read_all(plc.link, [request] * count)
         return time.perf_counter() - began
 
 

@@ -1,4 +1,4 @@
-"""A PLC as an object: a typed method for each command, over a link that keeps answers apart.
+"""A PLC as an object: a typed method for each command, over a ``Link``.
 
 All values are plain: discretes are bool, registers unsigned int, pages 128 bytes.
 """
@@ -9,7 +9,7 @@ import time
 from typing import TYPE_CHECKING
 
 from fatektool.errors import DataError, LineError, PlcBusy, PlcError, PlcRefused
-from fatektool.exchange.batch import ask_all, ask_until_refused, tell_all
+from fatektool.exchange.batch import read_all, read_until_refused, write_all
 from fatektool.protocol.commands import (
     DETAILED_BYTES,
     Control,
@@ -45,16 +45,17 @@ _MODE_TRIES = 20
 
 
 class Plc:
-    """One PLC: station and line are the link's.
+    """One PLC.
 
-    Every method raises ``LineError`` when no answer can be trusted, and ``PlcRefused`` when the answer is
-    an error code.
+    Every method that sends a request raises ``LineError`` if no valid answer comes (``NoAnswer`` after all
+    retries), ``PlcRefused`` if the answer is an error code, and ``UsageError`` if the protocol cannot express
+    the request. Every write raises ``LineReadOnly`` on a read-only line, before anything is sent.
 
     Args:
-        link: exchanges with one station.
+        link: requests to one station and their answers.
         target: the target as the user named it.
-        resources: closed with the PLC; None if the link is somebody else's.
-        lent: the line, if others may have it now and then.
+        resources: closed with the PLC; None if the caller closes the link.
+        lent: the line, if other processes may use it between two rounds.
     """
 
     def __init__(
@@ -72,12 +73,12 @@ class Plc:
 
     @property
     def is_open(self) -> bool:
-        """True until ``close``. A cable that was pulled does not show here: ask ``is_alive``."""
+        """True until ``close``. It stays True when the cable is pulled: see ``is_alive``."""
         return self._open
 
     @property
     def station(self) -> int:
-        """Who is asked. Set it to ask another station on the same line, without opening it anew.
+        """The station that is asked. Set it to ask another station on the same line.
 
         Raises:
             UsageError: no PLC can have this station.
@@ -86,12 +87,13 @@ class Plc:
 
     @station.setter
     def station(self, station: int) -> None:
-        self.link.fences.turn_to(station)
+        self.link.fences.change_station(station)
 
     def is_alive(self) -> bool:
-        """True if the PLC answers: one request that changes nothing, with the link's time-out and retries.
+        """Ask whether the PLC answers, by a request that changes nothing, with retries.
 
-        A refusal is an answer too. False where no usable answer comes, and when the line is closed.
+        Returns:
+            True for an answer, an error code too. False if no valid answer comes, and after ``close``.
         """
         if not self._open:
             return False
@@ -104,7 +106,7 @@ class Plc:
         return True
 
     def take(self) -> None:
-        """Have the line again if it was lent, however long that takes.
+        """Take the line back if it was lent; wait for it as long as another process uses it.
 
         Raises:
             LineError: it cannot be opened.
@@ -113,11 +115,11 @@ class Plc:
             self._lent.take()
 
     def lend(self, seconds: float, *, broken: bool = False) -> None:
-        """Wait so many seconds; who waits for the line may have it, until it is asked for with ``take``.
+        """Wait. A process that waits for the line gets it meanwhile, until ``take``.
 
         Args:
-            seconds: from now on.
-            broken: True if the line is to be opened anew in any case.
+            seconds: how long to wait.
+            broken: True to open the line anew in any case.
         """
         if self._lent is None:
             time.sleep(seconds)
@@ -127,7 +129,7 @@ class Plc:
         self._lent.lend(seconds)
 
     def close(self) -> None:
-        """Close the line; again is fine."""
+        """Close the line. Closing it twice is allowed."""
         self._open = False
         if self._resources is not None:
             self._resources.close()
@@ -143,11 +145,11 @@ class Plc:
     # --- status and mode --------------------------------------------------------------------------
 
     def brief_status(self) -> BriefStatus:
-        """40."""
+        """Read the brief status (command 40): mode, faults, model."""
         return self.link.ask(ReadBriefStatus())
 
     def detailed_status(self) -> DetailedStatus:
-        """53.
+        """Read the detailed status (command 53): unit type, OS version, ladder size in words, element counts.
 
         Raises:
             DataError: the answer has a layout that no paper describes.
@@ -164,18 +166,20 @@ class Plc:
         return status
 
     def run(self) -> None:
-        """41, then read the mode back, as on some lines an acknowledgement proves nothing.
+        """Start the program (command 41), then read the mode back.
+
+        On some lines an acknowledgement is no proof: the echo of the request reads as one.
 
         Raises:
-            PlcError: acknowledged, but the PLC does not run.
+            PlcError: acknowledged, but the PLC is not in RUN.
         """
         self._set_mode(run=True)
 
     def stop(self) -> None:
-        """41, then read the mode back.
+        """Stop the program (command 41), then read the mode back.
 
         Raises:
-            PlcError: acknowledged, but the PLC does not stop.
+            PlcError: acknowledged, but the PLC is not in STOP.
         """
         self._set_mode(run=False)
 
@@ -204,95 +208,108 @@ class Plc:
     # --- discretes --------------------------------------------------------------------------------
 
     def disable(self, element: Element) -> None:
-        """42: take a discrete out of the program's hands."""
+        """Disable a discrete (command 42): the program no longer changes it."""
         self.link.ask(ControlDiscrete(Control.DISABLE, element))
 
     def enable(self, element: Element) -> None:
-        """42: give a discrete back to the program."""
+        """Enable a discrete (command 42): the program controls it again."""
         self.link.ask(ControlDiscrete(Control.ENABLE, element))
 
     def set(self, element: Element) -> None:
-        """42: switch a discrete on."""
+        """Set a discrete to 1 (command 42)."""
         self.link.ask(ControlDiscrete(Control.SET, element))
 
     def reset(self, element: Element) -> None:
-        """42: switch a discrete off."""
+        """Reset a discrete to 0 (command 42)."""
         self.link.ask(ControlDiscrete(Control.RESET, element))
 
     def read_disabled(self, first: Element, count: int) -> tuple[bool, ...]:
-        """43: True for each of 1 to 256 discretes that is disabled."""
+        """Read which of 1 to 256 consecutive discretes are disabled (command 43): True for disabled."""
         return self.link.ask(ReadDisabled(first, count))
 
     def read_discretes(self, first: Element, count: int) -> tuple[bool, ...]:
-        """44: 1 to 256 discretes."""
+        """Read 1 to 256 consecutive discretes (command 44)."""
         return self.link.ask(ReadDiscretes(first, count))
 
     def write_discretes(self, first: Element, values: Iterable[bool]) -> None:
-        """45: 1 to 256 discretes."""
+        """Write 1 to 256 consecutive discretes (command 45)."""
         self.link.ask(WriteDiscretes(first, tuple(values)))
 
     # --- registers --------------------------------------------------------------------------------
 
     def read_registers(self, first: Element, count: int) -> tuple[int, ...]:
-        """46: 1 to 64 words of 16 bits, or 1 to 32 of 32 bits, unsigned."""
+        """Read consecutive registers (command 46): 1 to 64 of 16 bits or 1 to 32 of 32 bits, unsigned."""
         return self.link.ask(ReadRegisters(first, count))
 
     def write_registers(self, first: Element, values: Iterable[int]) -> None:
-        """47: 1 to 64 words of 16 bits, or 1 to 32 of 32 bits, unsigned."""
+        """Write consecutive registers (command 47): 1 to 64 of 16 bits or 1 to 32 of 32 bits, unsigned."""
         self.link.ask(WriteRegisters(first, tuple(values)))
 
     def read_mixed(self, elements: Iterable[Element]) -> tuple[int, ...]:
-        """48: elements of any kind, at most 64 words in all."""
+        """Read elements of any kind (command 48), at most 64 words in all; a discrete is 0 or 1."""
         return self.link.ask(ReadMixed(tuple(elements)))
 
     def write_mixed(self, items: Iterable[tuple[Element, int]]) -> None:
-        """49: elements of any kind with their values, at most 32 words in all."""
+        """Write elements of any kind (command 49), at most 32 words in all; a discrete is 0 or 1."""
         self.link.ask(WriteMixed(tuple(items)))
 
     # --- line and program -------------------------------------------------------------------------
 
     def broadcast(self, request: Request[None]) -> None:
-        """A write to every PLC on the line. None answers: wait for as long as one may take to do it."""
+        """Send a write to every PLC on the line (station 0), then wait for as long as a PLC may take.
+
+        PLCs do not reply to broadcasts, so success cannot be checked.
+        """
         link = self.link
         link.broadcast(request)
         wire_s = link.codec.request_bytes(request) * link.byte_time_s
-        link.hearing.listen_until(link.transport.clock() + wire_s + link.timeout_s)
+        link.receiver.listen_until(link.transport.clock() + wire_s + link.timeout_s)
 
     def loopback(self, data: bytes) -> bytes:
-        """4E: what the PLC sends back, which is what it was sent."""
+        """Send up to 256 characters (command 4E) and return what the PLC sends back, which is the same."""
         return self.link.ask(Loopback(data))
 
     def read_page(self, page: int) -> bytes:
-        """4F: one page of the program, 128 bytes."""
+        """Read one page of the program (command 4F), 128 bytes."""
         return self.link.ask(ReadPage(page))
 
     def read_pages(self, pages: Sequence[int], on_page: Callable[[int], None] | None = None) -> list[bytes]:
-        """4F for many pages, none of which can hold another's answer.
+        """Read many pages of the program (command 4F), 128 bytes each, none of them that of another number.
 
         Args:
-            pages: their numbers.
+            pages: page numbers.
             on_page: is called with the number of pages read so far.
         """
-        return ask_all(self.link, [ReadPage(page) for page in pages], on_page)
+        return read_all(self.link, [ReadPage(page) for page in pages], on_page)
 
     def read_pages_until_refused(
         self, pages: Sequence[int], on_page: Callable[[int], None] | None = None
     ) -> tuple[list[bytes], PlcRefused | None]:
-        """The same up to the first page that is refused, and that refusal; None if all were given."""
-        return ask_until_refused(self.link, [ReadPage(page) for page in pages], on_page)
+        """Read pages up to the first that the PLC refuses.
+
+        Args:
+            pages: page numbers.
+            on_page: is called with the number of pages read so far.
+
+        Returns:
+            The pages before it, and the refusal; None if the PLC refused none.
+        """
+        return read_until_refused(self.link, [ReadPage(page) for page in pages], on_page)
 
     def write_page(self, page: int, data: bytes) -> None:
-        """50: one page of the program, 128 bytes."""
+        """Write one page of the program (command 50), 128 bytes."""
         self.link.ask(WritePage(page, data))
 
     def write_pages(
         self, pages: Sequence[tuple[int, bytes]], on_page: Callable[[int], None] | None = None
     ) -> None:
-        """50 for many pages, in order. Read them back: an acknowledgement is no proof.
+        """Write many pages of the program (command 50) in order.
+
+        Read them back afterwards: an acknowledgement is no proof.
 
         Args:
             pages: numbers with 128 bytes each.
             on_page: is called with the number of pages acknowledged so far; on an error, the page behind
                 those may be written or not.
         """
-        tell_all(self.link, [WritePage(page, data) for page, data in pages], on_page)
+        write_all(self.link, [WritePage(page, data) for page, data in pages], on_page)

@@ -167,7 +167,7 @@ def _mapped(codec: Codec, modbus_map: ModbusMap | None) -> Codec:
 def _use_own_map(link: Link) -> None:
     from fatektool.exchange.plc_map import map_in_plc
 
-    link.codec = _mapped(link.codec, map_in_plc(link))
+    link.state.codec = _mapped(link.codec, map_in_plc(link))
 
 
 def _with_patience(transport: Transport, target: str, patience: Patience, limit: Limit | None) -> Transport:
@@ -181,7 +181,7 @@ def _with_patience(transport: Transport, target: str, patience: Patience, limit:
 
 def _end_turn(shared: SharedLine, link: Link) -> None:
     """Leave a line open that is in order; close one on which an answer may be on its way."""
-    if link.hearing.doubt:
+    if link.receiver.needs_fence:
         shared.close()
 
 
@@ -193,8 +193,10 @@ def _hand_over_doubt(lock: PortLock, link: Link) -> None:
     """
     inherited, fences = lock.found_doubt, link.counters.fences
     if inherited:
-        link.fences.inherit_doubt()
-    lock.leaves_doubt = lambda: link.hearing.doubt and not (inherited and link.counters.fences == fences)
+        link.fences.assume_outstanding_answer()
+    lock.leaves_doubt = lambda: (
+        link.receiver.needs_fence and not (inherited and link.counters.fences == fences)
+    )
 
 
 def open_line(

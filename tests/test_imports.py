@@ -102,12 +102,6 @@ def test_imports_point_down(folder: str) -> None:
 MODULES = {module for module, _ in trees()}
 
 IN_A_CIRCLE: set[str] = {
-    "fatektool.exchange.attempts",
-    "fatektool.exchange.fences",
-    "fatektool.exchange.link",
-    "fatektool.exchange.no_answer",
-    "fatektool.exchange.receiver",
-    "fatektool.exchange.sending",
     "fatektool.protocol.commands",
     "fatektool.protocol.status",
     "fatektool.simulator.listen.discovery",

@@ -1,18 +1,17 @@
-"""Many requests of one kind, none of which gets another's answer: reads, and writes, which need no more.
+"""Many requests of one kind, none of which gets the answer to another: reads, and writes.
 
-An answer that came twice could pass for the next question's, and shift all that follow by one. So answers are
-taken as proven only behind a fence:
+An answer that came twice could pass for that of the next request, and shift all that follow by one. So
+answers count as proven only behind a fence:
 
-- Input that nobody asked for has shown up: what was read since the last fence is read again, each behind a
+- Something came that nobody had asked for: what was read since the last fence is read again, each behind a
   fence of its own, as the first answer behind a fence is the right one.
-- Something else went wrong (a time-out, noise, a foreign frame): it may have been the stray answer, come to
-  grief, and a shift would have lasted up to it. So few answers are enough to tell: the one in whose exchange
+- Something else went wrong (a time-out, noise, a frame of another station): this may have been the extra
+  answer, damaged, and the answers before it may be shifted. A few of them show it: the one in whose exchange
   it was, the one before, and the last that differs from the one behind it. These are read again.
-- At the end comes a fence, with the same test if it does not come down cleanly.
+- At the end a fence is sent, with the same check if anything unexpected comes before its answer.
 
-On a clean line all this costs one fence, and nothing where answers bear the number of their request. What it
-cannot see is an answer that came twice and another one lost right behind it, which leaves no trace: a second
-pass is what finds that.
+On a clean line all this costs one fence, and nothing where answers carry the number of their request. It
+cannot see an answer that came twice with the next one lost, which leaves no trace: a second pass finds that.
 """
 
 from __future__ import annotations
@@ -32,13 +31,13 @@ A = TypeVar("A")
 B = TypeVar("B")
 
 
-def ask_all(
+def read_all(
     link: Link, requests: Sequence[Request[A]], on_answer: Callable[[int], None] | None = None
 ) -> list[A]:
-    """Send reads one after the other and give their answers in order.
+    """Send reads one after the other and return their answers in order.
 
     Args:
-        link: the line.
+        link: the link.
         requests: reads.
         on_answer: is called with the number of answers so far.
 
@@ -46,24 +45,24 @@ def ask_all(
         NoAnswer: one of them found no answer to trust.
         PlcRefused: one of them was refused.
     """
-    answers, refusal = ask_until_refused(link, requests, on_answer)
+    answers, refusal = read_until_refused(link, requests, on_answer)
     if refusal is not None:
         raise refusal
     return answers
 
 
-def ask_until_refused(
+def read_until_refused(
     link: Link, requests: Sequence[Request[A]], on_answer: Callable[[int], None] | None = None
 ) -> tuple[list[A], PlcRefused | None]:
-    """Send reads one after the other, up to the first that is refused; give the proven answers before it.
+    """Send reads one after the other, up to the first that is refused; return the proven answers before it.
 
     Args:
-        link: the line.
+        link: the link.
         requests: reads.
         on_answer: is called with the number of answers so far.
 
     Returns:
-        The answers in order, and what the PLC said to the request behind them; None if none was refused.
+        The answers in order, and the refusal of the request behind them; None if none was refused.
 
     Raises:
         NoAnswer: one of them found no answer to trust.
@@ -80,47 +79,47 @@ def ask_until_refused(
         refusal = error
     if batch.answers and len(requests) > 1:
         try:
-            batch.close()
+            batch.prove_last()
         except PlcRefused as error:  # what was answered before is refused now: nothing is proven
             return [], error
     return batch.answers, refusal
 
 
 def proven(link: Link, work: Callable[[], B], again: Callable[[], B]) -> B:
-    """Do work that asks one thing after the other, each by what was answered before.
+    """Do work in which each request depends on the answers before.
 
     Args:
-        link: the line.
-        work: asks, and gives what it found.
+        link: the link.
+        work: sends requests and returns what it found.
         again: the same, each of its reads behind a fence (``Link.fence``) of its own. It is done if something
-            was out of order on the line, as an answer may then have been another question's.
+            unexpected came, as an answer may then have been that of another request.
 
     Raises:
         NoAnswer: there was no answer to trust.
-        PlcRefused: the PLC refuses a fence that it took before.
+        PlcRefused: the PLC refuses a fence that it answered before.
     """
-    signs = link.signs[:2]
+    before = link.disturbances[:2]
     found = work()
-    link.fences.close()
-    return found if link.signs[:2] == signs else again()
+    link.fences.pass_last()
+    return found if link.disturbances[:2] == before else again()
 
 
-def tell_all(
+def write_all(
     link: Link, requests: Sequence[Request[None]], on_answer: Callable[[int], None] | None = None
 ) -> None:
     """Send writes one after the other, each when the one before it is acknowledged.
 
-    An acknowledgement may be another's, as everywhere; what was written must be read back.
+    An acknowledgement may be that of another write: what was written must be read back.
 
     Args:
-        link: the line.
+        link: the link.
         requests: writes.
         on_answer: is called with the number of acknowledged writes so far.
 
     Raises:
-        LineError: the one behind those found no answer to trust; it may have been made.
-        PlcRefused: that one was refused.
-        LineReadOnly: the line may only be read.
+        LineError: the write behind those found no answer to trust; it may have been made.
+        PlcRefused: that write was refused.
+        LineReadOnly: the line is read-only.
     """
     done = 0
 
@@ -133,81 +132,77 @@ def tell_all(
     while done < len(requests):
         lost = ask_in_stream(link, requests, done, take)
         if done < len(requests):
-            if not (lost and link.took(requests[done])):
+            if not (lost and link.is_made(requests[done])):
                 link.ask(requests[done])
             take(None)
 
 
 class _Batch(Generic[A]):
+    """Answers in order of their requests; those before ``_proven`` are proven by a fence."""
+
     def __init__(
         self, link: Link, requests: Sequence[Request[A]], on_answer: Callable[[int], None] | None
     ) -> None:
         self._link = link
         self._requests = requests
         self._on_answer = on_answer
-        self._unproven: list[int] = []  # read since the last fence
-        self._signs = link.signs
+        self._proven = 0
+        self._disturbances = link.disturbances  # when the last answer was taken
         self.answers: list[A] = []
 
     def take(self, answer: A) -> None:
-        """An answer that came while all was in order."""
-        self._unproven.append(len(self.answers))
+        """Take an answer that came while nothing unexpected did."""
         self.answers.append(answer)
         if self._on_answer is not None:
             self._on_answer(len(self.answers))
 
     def ask(self) -> None:
-        """Ask the next one with all care."""
+        """Send the next request by itself, with retries, and look whether anything unexpected came."""
         place = len(self.answers)
         self.take(self._link.ask(self._requests[place]))
-        if self._link.signs != self._signs:
-            self._unproven.pop()
-            self._look_into_it(place)
-            self._signs = self._link.signs
+        if self._link.disturbances != self._disturbances:
+            unsolicited, _, fences = self._disturbances
+            if self._link.unsolicited == unsolicited:
+                fenced = self._link.counters.fences != fences
+                self._check(place, suspects=[] if fenced else [place])
+            if self._link.unsolicited != unsolicited:
+                self._read_again(place + 1)
+            self._disturbances = self._link.disturbances
 
-    def _look_into_it(self, place: int) -> None:
-        """Something was out of order before or in the exchange of this place."""
-        suspicions, _, fences = self._signs
-        if self._link.suspicions == suspicions:
-            fenced = self._link.counters.fences != fences
-            self._check_unproven([] if fenced else [place])
-        self._unproven.append(place)
-        if self._link.suspicions != suspicions:
-            self._ask_unproven_again()
-
-    def close(self) -> None:
+    def prove_last(self) -> None:
         """Prove what is not proven yet."""
         link = self._link
-        suspicions, trouble, _ = self._signs
-        proven = link.fences.close()
-        if link.suspicions != suspicions:
-            self._ask_unproven_again()
-        elif proven and link.signs[1] != trouble:
-            self._check_unproven([])
+        unsolicited, trouble, _ = self._disturbances
+        passed = link.fences.pass_last()
+        if link.unsolicited != unsolicited:
+            self._read_again(len(self.answers))
+        elif passed and link.disturbances[1] != trouble:
+            self._check(len(self.answers), suspects=[])
 
-    def _check_unproven(self, doubtful: list[int]) -> None:
-        """Read again what tells of a shift.
+    def _check(self, end: int, suspects: list[int]) -> None:
+        """Prove the answers before a place: read those again that would show a shift.
 
         Args:
-            doubtful: the answer in whose exchange the trouble was, unless a fence stood before it.
+            end: the place.
+            suspects: the answer in whose exchange the trouble was, unless a fence stood before it.
         """
-        suspicions = self._link.suspicions
-        places = self._unproven
-        telling = [*doubtful, *places[-1:]]
-        for place, behind in zip(reversed(places[:-1]), reversed(places[1:]), strict=True):
-            if self.answers[place] != self.answers[behind]:
+        unsolicited = self._link.unsolicited
+        places = range(self._proven, end)
+        telling = [*suspects, *places[-1:]]
+        for place in reversed(places[:-1]):
+            if self.answers[place] != self.answers[place + 1]:
                 telling.append(place)
                 break
         held = all(self._ask_behind_fence(place) == self.answers[place] for place in telling)
-        if not held or self._link.suspicions != suspicions:
-            self._unproven = places + doubtful
-            self._ask_unproven_again()
-        self._unproven = []
+        if not held or self._link.unsolicited != unsolicited:
+            self._read_again(end + len(suspects))
+        self._proven = end
 
-    def _ask_unproven_again(self) -> None:
-        for place in self._unproven:
+    def _read_again(self, end: int) -> None:
+        """Read the answers before a place that are not proven again, each behind a fence."""
+        for place in range(self._proven, end):
             self.answers[place] = self._ask_behind_fence(place)
-        self._unproven = []
+        self._proven = end
 
     def _ask_behind_fence(self, place: int) -> A:
         self._link.fence(self._requests[place])

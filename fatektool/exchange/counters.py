@@ -1,4 +1,4 @@
-"""What was seen on a line so far, counted."""
+"""What was sent and received on a line so far, counted."""
 
 from __future__ import annotations
 
@@ -7,26 +7,26 @@ from dataclasses import dataclass
 
 @dataclass(slots=True)
 class Counters:
-    """What was seen on the line so far."""
+    """What was sent and received on a line so far."""
 
     exchanges: int = 0
-    writes: int = 0  # requests that write, sent or about to be
+    writes: int = 0  # requests that write, sent or about to be sent
     timeouts: int = 0
     checksum_errors: int = 0
     garbled: int = 0
     strays: int = 0
     echoes: int = 0
     fences: int = 0
-    bytes_heard: int = 0
+    bytes_received: int = 0
 
     @property
     def trouble(self) -> int:
-        """How often something went wrong; 0 on a clean line."""
+        """How many errors there were; 0 on a clean line."""
         return self.timeouts + self.checksum_errors + self.garbled + self.strays
 
     def __str__(self) -> str:
         return (
-            f"{self.exchanges} exchanges, {self.bytes_heard} bytes heard, {self.timeouts} time-outs, "
+            f"{self.exchanges} exchanges, {self.bytes_received} bytes received, {self.timeouts} time-outs, "
             f"{self.checksum_errors} wrong checksums, {self.garbled} times noise, "
             f"{self.strays} stray answers, {self.echoes} echoes, {self.fences} fences"
         )

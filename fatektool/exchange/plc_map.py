@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def mapped(codec: Codec, modbus_map: ModbusMap | None) -> Codec:
-    """The same protocol over another Modbus map; None for the standard one.
+    """The same protocol with another Modbus map; None for the standard one.
 
     Raises:
         UsageError: it has none.
@@ -27,10 +27,10 @@ def mapped(codec: Codec, modbus_map: ModbusMap | None) -> Codec:
 
 
 def map_in_plc(link: Link) -> ModbusMap:
-    """The map that the PLC's own R3968 to R3980 describe, read over Modbus.
+    """The map that the PLC's registers R3968 to R3980 describe, read over Modbus.
 
-    With R3968 = A55AH the standard references are gone, R3968's too, unless the map's own range holds them:
-    then, and only then, what is read there describes just that.
+    With R3968 = A55AH the standard references are not in force, that of R3968 included, unless the PLC's own
+    map has the same ones. So what is read there counts only if it describes a map that has R3968 just there.
 
     Raises:
         PlcError: they cannot be read, or another map is in force.
@@ -46,9 +46,7 @@ def map_in_plc(link: Link) -> ModbusMap:
     )
 
     first = Element("R", FIRST_REGISTER)
-    hint = (
-        "'fatektool snapshot R3968-R3980 -o map.json' on a port that speaks FACON, then --modbus-map map.json"
-    )
+    hint = "'fatektool snapshot R3968-R3980 -o map.json' on a FACON port, then --modbus-map map.json"
     try:
         words: tuple[int, ...] = link.ask(ReadRegisters(first, REGISTER_COUNT))
         found = map_of_registers(words)
@@ -60,7 +58,7 @@ def map_in_plc(link: Link) -> ModbusMap:
         here = False
     if found.name == STANDARD_NAME or not here:
         raise PlcError(
-            "--modbus-map custom: where R3968 would be, the PLC does not show a map of its own in force",
+            "--modbus-map custom: the PLC shows no map of its own at the reference of R3968",
             hint=f"leave the option out; if the PLC has one, {hint}",
         )
     return found

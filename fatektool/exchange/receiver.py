@@ -1,266 +1,207 @@
-"""What is heard on a line beside the answers: noise, strangers, answers that nobody waits for.
+"""What is received beside the answers: noise, frames of other stations, answers that nobody waits for.
 
-All of it leaves a *doubt*, which a fence takes away. What could mean that an earlier answer was taken for
-another's is also a *suspicion*: whoever sent many requests of one kind must look at their answers again.
-
-An answer that is still owed to an earlier request is no suspicion when it comes: it was to be expected. It is
-late, and how late tells how long this PLC takes to answer.
+After any of it, answers may be out of step with requests, until a fence shows that nothing else can come:
+``needs_fence``. ``unsolicited`` counts what nobody had asked for: an answer to an earlier request may have
+been taken for that of a later one. Whoever sent many requests of one kind must then check their answers. An
+answer that is still outstanding is not unsolicited, but late (``outstanding``).
 """
 
 from __future__ import annotations
 
-from collections import deque
-from math import inf
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import FrameError, TransportTimeout
-from fatektool.exchange.counters import Counters
+from fatektool.exchange.outstanding import Outstanding
+from fatektool.exchange.state import MOST_EXTENSION
 from fatektool.protocol.commands import Command
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fatektool.errors import GatewayTimeout
-    from fatektool.exchange.sending import Sent
-    from fatektool.protocol.codec import Decoder, Frame
-    from fatektool.transport.base import Transport
+    from fatektool.exchange.sent import Sent
+    from fatektool.exchange.state import LinkState
+    from fatektool.protocol.codec import Frame
 
-_READ_BYTES: Final = 4096
-_MOST_OWED: Final = 64
-"""Of the oldest, which come first, none may be pushed out by the fences that are asked meanwhile."""
+READ_BYTES: Final = 4096
+"""As many bytes are read at once."""
 
-
-class Awaited(NamedTuple):
-    """A request whose answer may still come.
-
-    Attributes:
-        sent: the request.
-        since: when it and its answer could have crossed the wire: from then on the PLC's time runs.
-        given_s: how long the answer was to be waited for then.
-        waited_for: False if nobody waited for its answer.
-        before_s: how long the one took that was taken for its answer, if another comes.
-    """
-
-    sent: Sent
-    since: float
-    given_s: float
-    waited_for: bool = True
-    before_s: float = 0.0
-
-    def is_answered_by(self, frame: Frame) -> bool:
-        """True if the frame may be its answer."""
-        return self.sent.answered_by(frame) and self.sent.data in {None, frame.data}
+LONGEST_LISTENING_S: Final = 2.0
+"""A PLC is listened to this much longer than its time-out, at most, before it is called silent."""
 
 
-class Hearing:
-    """The state of the input of one line.
+class Receiver:
+    """The input of one link.
 
     Args:
-        transport: the medium.
-        decoder: cuts its input into frames.
-        station: whose answers are waited for.
+        state: of the link.
 
     Attributes:
-        counters: what was seen so far.
-        suspicions: how often something came that may have been an answer gone astray.
-        doubt: True until a fence proves that nothing else can come.
-        late_s: the longest that an answer took that came too late, beside wire time; 0 if none did.
-        on_stray: is shown each good frame that answers nothing asked then.
-        on_bad_bytes: is shown what was no frame.
-        words: what was heard instead of an answer, for messages; empty for silence.
-        gateway: what a gateway said instead of an answer to the last request; None if none did.
-        misnumbered: True if an answer bore a number that no request had.
+        decoder: cuts the input into frames.
+        outstanding: the requests whose answers may still come.
+        unsolicited: how often something came that nobody had asked for.
+        needs_fence: True until a fence shows that nothing else can come.
+        on_stray: is given each good frame that answers nothing asked then.
+        on_bad_bytes: is given what was no frame.
+        instead: what was received instead of an answer, for messages; empty for nothing.
+        gateway_error: what a gateway answered instead of the PLC to the last request; None if it did not.
+        wrong_number: True if an answer had a transaction number that no request had.
     """
 
-    def __init__(self, transport: Transport, decoder: Decoder, station: int) -> None:
-        self.decoder = decoder
-        self.counters = Counters()
-        self.suspicions = 0
-        self.doubt = False
-        self.late_s = 0.0
-        self.on_stray: Callable[[Frame], object] = _to_nobody
-        self.on_bad_bytes: Callable[[FrameError], object] = _to_nobody
-        self.words = ""
-        self.gateway: GatewayTimeout | None = None
-        self.misnumbered = False
-        self._transport = transport
-        self._station = station
-        self._doubtful: set[int] = set()  # other stations, whose late answers may still come
-        self._answered_at = -inf  # when the last one of several answers that were due came
-        self._awaited: Awaited | None = None  # the last request
-        self._owed: deque[Awaited] = deque(maxlen=_MOST_OWED)  # those without an answer since the last fence
+    def __init__(self, state: LinkState) -> None:
+        self.decoder = state.codec.decoder()
+        self.outstanding = Outstanding(state)
+        self.unsolicited = 0
+        self.needs_fence = False
+        self.on_stray: Callable[[Frame], object] = _ignore
+        self.on_bad_bytes: Callable[[FrameError], object] = _ignore
+        self.instead = ""
+        self.gateway_error: GatewayTimeout | None = None
+        self.wrong_number = False
+        self._state = state
+        self._counters = state.counters
+        self._transport = state.transport
+        self._stations_to_fence: set[int] = set()  # other stations, whose late answers may still come
 
-    @property
-    def owed_since(self) -> float | None:
-        """Since when the oldest answer is owed; None if there is none."""
-        return self._owed[0].since if self._owed else None
+    def change_station(self, station: int) -> bool:
+        """Wait for another station's answers; True if an answer to an earlier request may still come from it.
 
-    def expect(self, sent: Sent, wire_s: float, wait_s: float) -> None:
-        """A request went out.
+        Answers carry their station, so those of the station before matter when it is asked again.
 
         Args:
-            sent: the request.
-            wire_s: of it and its answer.
-            wait_s: how long its answer will be waited for beside that.
+            station: the other station; the state still has the one before.
         """
-        self._awaited = Awaited(sent, self._transport.clock() + wire_s, wait_s)
+        if self.needs_fence:
+            self._stations_to_fence.add(self._state.station)
+        self.outstanding.change_station()
+        may_come = station in self._stations_to_fence
+        self._stations_to_fence.discard(station)
+        self.needs_fence = self.needs_fence or may_come
+        return may_come
 
-    def turn_to(self, station: int) -> bool:
-        """Wait for another station's answers from now on; True if an earlier one of it may still come.
+    # --- what became of a request -----------------------------------------------------------------
 
-        Answers bear their station's number, so those of the station before matter when it is asked again.
-        """
-        if self.doubt:
-            self._doubtful.add(self._station)
-        self._station = station
-        self._awaited = None
-        self._owed.clear()
-        self.late_s = 0.0
-        known = station in self._doubtful
-        self._doubtful.discard(station)
-        self.doubt = self.doubt or known
-        return known
+    def fence_passed(self) -> None:
+        """No answer to an earlier request can come any more."""
+        self.needs_fence = False
+        self.outstanding.forget()
 
-    def fenced(self) -> None:
-        """A fence came down: nothing can be on its way any more."""
-        self.doubt = False
-        self._owed.clear()
-
-    def lost(self) -> None:
+    def note_no_answer(self) -> None:
         """The last request found no answer in time."""
-        self._owe(waited_for=True)
+        self.needs_fence = True
+        self.outstanding.keep_last(waited_for=True)
 
-    def give_up(self) -> None:
-        """The last request is on its way, and nobody will wait for its answer."""
-        self._owe(waited_for=False)
+    def give_up_answer(self) -> None:
+        """The last request was sent, and nobody will wait for its answer."""
+        self.needs_fence = True
+        self.outstanding.keep_last(waited_for=False)
 
-    def _owe(self, *, waited_for: bool) -> None:
-        self.doubt = True
-        if self._awaited is not None:
-            sent = self._awaited.sent._replace(raw=b"")
-            self._owed.append(self._awaited._replace(sent=sent, waited_for=waited_for))
-            self._awaited = None
+    # --- what came instead of an answer -----------------------------------------------------------
 
-    def answered(self, frame: Frame) -> None:
-        """An answer was taken. If the like was owed, it may be that one, and this one's still comes."""
-        if not self._owed or self._awaited is None:
-            return
-        for place, owed in enumerate(self._owed):
-            if owed.is_answered_by(frame):
-                self._answered_at = now = self._transport.clock()
-                self._owed[place] = owed._replace(since=self._awaited.since, before_s=now - owed.since)
-                return
-
-    def bad_bytes(self, error: FrameError) -> None:
-        """Bytes that are no frame."""
-        self.doubt = True
+    def note_bad_bytes(self, error: FrameError) -> None:
+        """Bytes came that are no frame."""
+        self.needs_fence = True
         self.on_bad_bytes(error)
         if error.checksum:
-            self.counters.checksum_errors += 1
-            self.words = f"a damaged frame ({error.message})"
+            self._counters.checksum_errors += 1
+            self.instead = f"a damaged frame ({error.message})"
         else:
-            self.counters.garbled += 1
-            self.words = self.words or f"{len(error.raw)} bytes that are no frame"
+            self._counters.garbled += 1
+            self.instead = self.instead or f"{len(error.raw)} bytes that are no frame"
 
-    def stray(self, frame: Frame, asked: Sent | None = None) -> None:
-        """A good frame that answers nothing asked now.
+    def note_stray(self, frame: Frame, asked: Sent | None = None) -> None:
+        """A good frame came that answers nothing asked now.
 
         Args:
-            frame: it.
+            frame: the frame.
             asked: what is asked now, if anything is.
         """
-        self.counters.strays += 1
-        self.doubt = True
-        if frame.station != self._station:
-            self.words = f"station {frame.station} instead"
-        else:
-            owed = next((owed for owed in self._owed if owed.is_answered_by(frame)), None)
-            if owed is None:
-                self._answer_to_nothing(frame, asked)
-            else:
-                self._owed.remove(owed)
-                if owed.waited_for:  # it came, but late: this PLC gets more time from now on
-                    self.late_s = max(self.late_s, self._took_s(owed), owed.before_s)
-            self._answered_at = self._transport.clock()
+        self._counters.strays += 1
+        self.needs_fence = True
+        if frame.station != self._state.station:
+            self.instead = f"a frame of station {frame.station}"
+        elif not self.outstanding.take_late(frame):
+            self._note_unsolicited(frame, asked)
         self.on_stray(frame)
 
-    def _took_s(self, owed: Awaited) -> float:
-        """How long a PLC took for an answer that has just come.
-
-        It does one thing after the other, so the time counts from its answer before. If that makes less than
-        the answer was waited for, something else took the time, and counts all the same.
-        """
-        now = self._transport.clock()
-        took_s = now - max(owed.since, self._answered_at)
-        return took_s if took_s > owed.given_s else now - owed.since
-
-    def _answer_to_nothing(self, frame: Frame, asked: Sent | None) -> None:
+    def _note_unsolicited(self, frame: Frame, asked: Sent | None) -> None:
         if asked is not None and (frame.command, frame.number) == (asked.code, asked.number):
             pass  # the caller has said what is wrong with it
         elif asked is not None and frame.command == asked.code:
-            self.misnumbered = True
-            self.words = (
+            self.wrong_number = True
+            self.instead = (
                 f"an answer with transaction number {frame.number:04X}, expected {asked.number:04X}, "
                 "that of the request"
             )
         elif frame.command == Command.LOOPBACK:
-            self.words = self.words or "another loopback's answer"
+            self.instead = self.instead or "another loopback's answer"
         else:
-            self.words = self.words or f"an answer to another command ({frame.command:02X})"
-        if frame.command != Command.LOOPBACK:  # an old fence can be told from everything else
-            self.suspicions += 1
+            self.instead = self.instead or f"an answer to another command ({frame.command:02X})"
+        if frame.command != Command.LOOPBACK:  # an old fence's answer can be told from all others
+            self.unsolicited += 1
+
+    # --- when nothing is asked --------------------------------------------------------------------
 
     def drop_input(self) -> bool:
-        """Before a request: look at what lies in the input, as it may tell of an answer that went astray.
+        """Before a request: drop the input, after a look at it, as it may show that answers are out of step.
 
-        True if there was anything.
+        Returns:
+            True if there was anything.
         """
         left = self.decoder.clear()
         found = self._transport.drain()
         if not left and not found:
             return False
-        self.counters.bytes_heard += len(found)
-        self.doubt = True
+        self._counters.bytes_received += len(found)
+        self.needs_fence = True
         if left:
-            self.suspicions += 1
-        self._overhear(found)
+            self.unsolicited += 1
+        self._note_unasked(found)
         if self.decoder.clear():
-            self.suspicions += 1
+            self.unsolicited += 1
         return True
 
     def listen_until(self, moment: float, *, or_late: bool = False) -> None:
-        """Wait until a moment of the transport's clock, and look at whatever comes unasked.
+        """Wait until a moment of the transport's clock, and take note of whatever comes.
 
         Args:
             moment: until when.
-            or_late: end as soon as an answer came late.
+            or_late: end as soon as a late answer came.
 
         Raises:
             TransportClosed: the line is gone.
         """
-        while (rest := moment - self._transport.clock()) > 0 and not (or_late and self.late_s):
+        while (rest := moment - self._transport.clock()) > 0 and not (or_late and self._state.late_s):
             try:
-                found = self._transport.read(_READ_BYTES, rest)
+                found = self._transport.read(READ_BYTES, rest)
             except TransportTimeout:
                 continue
-            self.counters.bytes_heard += len(found)
-            self.doubt = True
-            self._overhear(found)
+            self._counters.bytes_received += len(found)
+            self.needs_fence = True
+            self._note_unasked(found)
 
-    def _overhear(self, found: bytes) -> None:
-        """Look at bytes that nobody asked for."""
+    def listen_for_late(self) -> None:
+        """Before a PLC is called silent, or its connection made anew: is its answer only late?"""
+        since = self.outstanding.since
+        if since is not None and not self._state.late_s and not self.instead:
+            timeout_s = self._state.timeout_s
+            longest_s = min(MOST_EXTENSION * timeout_s, timeout_s + LONGEST_LISTENING_S)
+            self.listen_until(since + longest_s, or_late=True)
+
+    def _note_unasked(self, found: bytes) -> None:
+        """Take note of bytes that nobody asked for."""
         self.decoder.feed(found)
         while True:
             try:
                 frame = self.decoder.next_frame()
             except FrameError as error:
-                self.bad_bytes(error)
-                self.suspicions += 1
+                self.note_bad_bytes(error)
+                self.unsolicited += 1
                 continue
             if frame is None:
                 return
-            self.stray(frame)
+            self.note_stray(frame)
 
 
-def _to_nobody(_: object) -> None:
+def _ignore(_: object) -> None:
     pass

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from fatektool.exchange.link import Link
-    from fatektool.exchange.sending import Sent
+    from fatektool.exchange.sent import Sent
     from fatektool.protocol.codec import Frame
     from fatektool.protocol.commands import Request
 
@@ -46,38 +46,38 @@ def ask_in_stream(link: Link, requests: Sequence[Request[A]], first: int, take: 
         PlcRefused: a write is refused; of a read, the caller hears it by asking again.
         LineReadOnly: they write, and the line may only be read.
     """
-    hearing = link.hearing
-    if hearing.drop_input() or hearing.doubt or link.echoes is not False:
+    receiver = link.receiver
+    if receiver.drop_input() or receiver.needs_fence or link.echoes is not False:
         return False
     steps = _write_by_write if requests[first].writes else _read_ahead
     try:
         return steps(link, requests, first, take)
     except TransportError:
-        hearing.lost()
+        receiver.note_no_answer()
         return True
     except PlcRefused:
         raise
     except BaseException:  # an interrupt: the answer may still come
-        hearing.lost()
+        receiver.note_no_answer()
         raise
 
 
 def _read_ahead(link: Link, requests: Sequence[Request[A]], first: int, take: Callable[[A], None]) -> bool:
-    hearing = link.hearing
+    receiver = link.receiver
     last = len(requests) - 1
-    asked = sent = link.prepare(requests[first])
+    asked = sent = link.sender.prepare(requests[first])
     waiting: bytes | None = None  # the last answer, not yet looked at
     for place in range(first, len(requests)):
         link.sender.send(sent)
         link.counters.exchanges += 1
         if waiting is not None and not _accept(link, requests[place - 1], asked, waiting, take):
-            hearing.give_up()
+            receiver.give_up_answer()
             return True
         asked = sent
         if place < last:
-            sent = link.prepare(requests[place + 1])
+            sent = link.sender.prepare(requests[place + 1])
         received = _receive(link, asked)
-        link.sender.heard_out()
+        link.sender.note_end()
         if received is None:
             return True
         if isinstance(received, bytes):
@@ -86,7 +86,7 @@ def _read_ahead(link: Link, requests: Sequence[Request[A]], first: int, take: Ca
             waiting = None
         else:  # a refusal, mostly: nothing is sent behind it whose answer nobody would wait for
             return True
-        if hearing.drop_input():
+        if receiver.drop_input():
             break
     return waiting is not None and not _accept(link, requests[place], asked, waiting, take)
 
@@ -94,21 +94,21 @@ def _read_ahead(link: Link, requests: Sequence[Request[A]], first: int, take: Ca
 def _write_by_write(
     link: Link, requests: Sequence[Request[A]], first: int, take: Callable[[A], None]
 ) -> bool:
-    hearing = link.hearing
-    sent = link.prepare(requests[first])
+    receiver = link.receiver
+    sent = link.sender.prepare(requests[first])
     for place in range(first, len(requests)):
         asked = sent
         link.sender.send(asked)
         link.counters.exchanges += 1
         if place + 1 < len(requests):
-            sent = link.prepare(requests[place + 1])
+            sent = link.sender.prepare(requests[place + 1])
         waiting = _receive(link, asked)
-        link.sender.heard_out()
+        link.sender.note_end()
         if waiting is None:
             return True
-        more = hearing.drop_input()
+        more = receiver.drop_input()
         if not _accept(link, requests[place], asked, waiting, take):
-            hearing.lost()
+            receiver.note_no_answer()
             return True
         if more:
             break
@@ -117,9 +117,9 @@ def _write_by_write(
 
 def _receive(link: Link, sent: Sent) -> Frame | bytes | None:
     """Bytes of the answer's length, not looked at; a frame, if one came before; else None, and a doubt."""
-    hearing, transport = link.hearing, link.transport
+    receiver, transport = link.receiver, link.transport
     size = sent.size
-    rest = wait_s = (len(sent.raw) + size) * link.byte_time_s + link.wait_s
+    rest = wait_s = (len(sent.raw) + size) * link.byte_time_s + link.state.wait_s
     began = transport.clock()
     whole = b""
     looked = False
@@ -129,23 +129,23 @@ def _receive(link: Link, sent: Sent) -> Frame | bytes | None:
             data = transport.read(_READ_BYTES, max(0.0, rest))
         except TransportTimeout:
             data = b""
-        link.counters.bytes_heard += len(data)
+        link.counters.bytes_received += len(data)
         whole += data
         if len(whole) == size:  # to send what comes next is more urgent than to look at it
-            hearing.decoder.clear()
+            receiver.decoder.clear()
             return whole
-        hearing.decoder.feed(data)
+        receiver.decoder.feed(data)
         try:
-            frame = hearing.decoder.next_frame()
+            frame = receiver.decoder.next_frame()
         except FrameError as error:
-            hearing.bad_bytes(error)
-            hearing.give_up()
+            receiver.note_bad_bytes(error)
+            receiver.give_up_answer()
             return None
         if frame is not None:
             return frame
         rest = began + wait_s - transport.clock()
     link.counters.timeouts += 1
-    hearing.lost()
+    receiver.note_no_answer()
     return None
 
 
@@ -157,23 +157,23 @@ def _accept(
     Raises:
         PlcRefused: a write is refused.
     """
-    hearing = link.hearing
+    receiver = link.receiver
     frame: Frame | None = None
     try:
         if isinstance(waiting, bytes):
-            hearing.decoder.feed(waiting)
-            frame = hearing.decoder.next_frame()
+            receiver.decoder.feed(waiting)
+            frame = receiver.decoder.next_frame()
         else:
             frame = waiting
         if frame is None:
             return False
         if sent.answered_by(frame):
             take(link.codec.parse_answer(request, frame))
-            link.answered.add(request.command)
+            link.state.answered.add(request.command)
             return True
     except FrameError as error:
         if frame is None:
-            hearing.bad_bytes(error)
+            receiver.note_bad_bytes(error)
             return False
     except PlcRefused:
         if request.writes:
@@ -181,5 +181,5 @@ def _accept(
         return False
     except PlcBusy:  # to be asked again, with pauses
         return False
-    hearing.stray(frame)
+    receiver.note_stray(frame)
     return False

@@ -123,11 +123,12 @@ def linked(
     timeout_s: float = 0.5,
     line: LineSettings | None = None,
     notes: list[str] | None = None,
+    transport: MemoryTransport | None = None,
 ) -> Link:
     """A link to a peer whose fences are ``nonce(0)``, ``nonce(1)`` and so on."""
     numbers = itertools.count()
     return Link(
-        MemoryTransport(peer),
+        transport or MemoryTransport(peer),
         FACON,
         1,
         line or LineSettings(),

@@ -86,7 +86,7 @@ def test_a_late_answer_of_the_station_before_is_not_taken_when_it_is_asked_again
         soon(right),
     )
     plc = Plc(linked(peer, retries=0), "x")
-    plc.link.echoes = False
+    plc.link.state.echoes = False
     with pytest.raises(NoAnswer):
         plc.link.ask(R0)
     plc.station = 2

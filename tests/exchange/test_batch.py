@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fatektool.errors import LineError, NoAnswer, PlcRefused
-from fatektool.exchange.batch import ask_all
+from fatektool.exchange.batch import read_all
 from fatektool.exchange.link import Link
 from fatektool.protocol.commands import ReadPage, ReadRegisters
 from fatektool.protocol.elements import Element
@@ -69,7 +69,7 @@ class Shifting:
 
 
 def read(peer: object, count: int) -> list[bytes]:
-    return ask_all(linked(peer), [ReadPage(page) for page in range(count)])  # type: ignore[arg-type]
+    return read_all(linked(peer), [ReadPage(page) for page in range(count)])  # type: ignore[arg-type]
 
 
 def test_a_clean_line_costs_one_loopback() -> None:
@@ -77,7 +77,7 @@ def test_a_clean_line_costs_one_loopback() -> None:
     peer = Shifting(program, lambda _, answer: [answer])
     told: list[int] = []
     link = linked(peer)
-    assert ask_all(link, [ReadPage(page) for page in range(4)], told.append) == program
+    assert read_all(link, [ReadPage(page) for page in range(4)], told.append) == program
     assert told == [1, 2, 3, 4]
     assert fences(peer.heard) == 1
     assert len(peer.heard) == 5
@@ -189,7 +189,7 @@ def test_a_plc_without_loopback_serves_a_clean_batch(refuses: bool) -> None:
     notes: list[str] = []
     link = linked(Rules(answers, loopback=False), notes=notes)
     for _ in range(2):
-        assert ask_all(link, [ReadPage(page) for page in range(3)]) == program
+        assert read_all(link, [ReadPage(page) for page in range(3)]) == program
     assert len(notes) == 2
     assert "no loopback" in notes[0]
 
@@ -198,7 +198,7 @@ def test_a_plc_without_loopback_and_a_doubt_is_no_proof() -> None:
     answer = page_answer(bytes(128))
     link = linked(Rules({ask_page(0): lambda _: [(0.01, answer), (0.02, answer)]}, loopback=False))
     with pytest.raises(NoAnswer):
-        ask_all(link, [ReadPage(0), ReadPage(0)])
+        read_all(link, [ReadPage(0), ReadPage(0)])
 
 
 def test_a_refused_page_is_told() -> None:
@@ -223,7 +223,7 @@ def test_registers_are_kept_apart_too() -> None:
             to_say.clear()
             return [(now + 0.01, piece) for piece in said]
 
-    assert ask_all(linked(Behind()), requests) == [(0,), (1,), (2,)]
+    assert read_all(linked(Behind()), requests) == [(0,), (1,), (2,)]
 
 
 # --- the simulator's faults -------------------------------------------------------------------------
@@ -260,7 +260,7 @@ def read_simulated(
         nonces=lambda: b"%08X" % next(numbers),
     )
     try:
-        return ask_all(link, [ReadPage(page) for page in range(PAGES)])
+        return read_all(link, [ReadPage(page) for page in range(PAGES)])
     except LineError:
         return None
 

@@ -53,7 +53,7 @@ def test_one_try_is_the_wire_time_of_both_frames_and_the_plcs_time_and_a_listeni
     with pytest.raises(NoAnswer):
         link.ask(request_)
     with pytest.raises(TransportTimeout):
-        linked(Script(), line=line, timeout_s=timeout_s).try_once(request_)
+        linked(Script(), line=line, timeout_s=timeout_s).attempts.once(request_)
     listened_s = min(3 * timeout_s, 2.0)
     assert link.transport.clock() == pytest.approx(size * byte_s + timeout_s + listened_s, abs=1e-9)
 

@@ -57,7 +57,7 @@ def test_a_dead_plc_on_an_echoing_line(request_: Loopback) -> None:
     for retries in range(3):
         link = linked(Rules(echo=True, dead=True), retries=retries)
         for _ in range(2):
-            with pytest.raises(NoAnswer, match="heard its own request only") as caught:
+            with pytest.raises(NoAnswer, match="received its own request only") as caught:
                 link.ask(request_)
             assert "A and B" in str(caught.value.hint)
 
@@ -121,7 +121,7 @@ def test_an_echo_that_was_not_there_before_casts_a_doubt() -> None:
     link.ask(Loopback(b"A"))
     peer.echo = True  # somebody plugs in another adapter
     assert link.ask(R0) == (0xA000,)
-    assert link.suspicions == 1
+    assert link.unsolicited == 1
     assert link.ask(Loopback(b"A")) == b"A"
     assert link.ask(R0) == (0xA000,)
 

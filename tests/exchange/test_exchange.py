@@ -52,8 +52,8 @@ def test_a_clean_exchange_is_one_request_and_one_answer() -> None:
     assert peer.heard == [ASK_R0]
     assert link.counters.exchanges == 1
     assert link.counters.trouble == 0
-    assert link.counters.bytes_heard == len(ANSWER)
-    assert link.suspicions == 0
+    assert link.counters.bytes_received == len(ANSWER)
+    assert link.unsolicited == 0
 
 
 @pytest.mark.parametrize("size", [1, 2, 3, 7, 12])
@@ -132,7 +132,7 @@ def test_a_refusal_is_an_answer_and_is_not_tried_again() -> None:
 
 def test_retries_zero_is_one_try() -> None:
     peer = Script()
-    with pytest.raises(NoAnswer, match=r"in 1 try, 2\.0 s in all: nothing heard"):
+    with pytest.raises(NoAnswer, match=r"in 1 try, 2\.0 s in all: nothing received"):
         linked(peer, retries=0).ask(R0)
     assert peer.heard == [ASK_R0]
 
@@ -213,8 +213,7 @@ class Interrupted(MemoryTransport):
 
 def test_after_an_interrupt_the_answer_to_come_is_not_the_next_ones() -> None:
     peer = Rules({ASK_R0: lambda _: [(0.3, ANSWER)], ASK_R1: register(1)})
-    link = linked(peer)
-    link.transport = Interrupted(peer)
+    link = linked(peer, transport=Interrupted(peer))
     with pytest.raises(KeyboardInterrupt):
         link.ask(R0)
     assert link.ask(R1) == (1,)
@@ -247,16 +246,15 @@ class Breaking(MemoryTransport):
 @pytest.mark.parametrize(("writes", "reads"), [({1}, set()), (set(), {1}), ({1, 3}, {2})])
 def test_a_connection_that_breaks_is_used_again(writes: set[int], reads: set[int]) -> None:
     peer = Rules({ASK_R0: ANSWER})
-    link = linked(peer)
-    link.transport = Breaking(peer, writes, reads)
+    link = linked(peer, transport=Breaking(peer, writes, reads))
     assert link.ask(R0) == (0x10F6,)
 
 
 def test_a_connection_that_stays_broken_says_why_and_soon() -> None:
     peer = Rules()
     for retries in range(5):
-        link = linked(peer, retries=retries)
-        link.transport = transport = Breaking(peer, set(range(100)), set())
+        transport = Breaking(peer, set(range(100)), set())
+        link = linked(peer, retries=retries, transport=transport)
         with pytest.raises(TransportClosed, match="the connection broke") as caught:
             link.ask(R0)
         assert caught.value.hint == "look at the cable"
@@ -264,9 +262,9 @@ def test_a_connection_that_stays_broken_says_why_and_soon() -> None:
 
 
 def test_a_connection_is_renewed_after_two_silences() -> None:
-    peer = Script()
-    link = linked(peer, retries=3)
-    link.transport = transport = Breaking(Rules(dead=True), set(), set())
+    peer = Rules(dead=True)
+    transport = Breaking(peer, set(), set())
+    link = linked(peer, retries=3, transport=transport)
     with pytest.raises(NoAnswer):
         link.ask(R0)
     assert transport.renewed == 2
@@ -298,16 +296,16 @@ def test_a_silence_whose_last_try_was_due_for_a_new_connection(
     retries: int, *, doubt: bool, writes: bool
 ) -> None:
     link = Link(Renewed(Rules(dead=True)), FACON, 1, LineSettings(), retries=retries)
-    link.hearing.doubt = doubt
+    link.receiver.needs_fence = doubt
     request: Request[Any] = WriteRegisters(Element("R", 0), (7,)) if writes else R0
-    with pytest.raises(NoAnswer, match="nothing heard"):
+    with pytest.raises(NoAnswer, match="nothing received"):
         link.ask(request)
 
 
 def test_garbage_is_no_reason_to_renew() -> None:
     peer = Rules({ASK_R0: lambda _: soon(b"garbage")})
-    link = linked(peer)
-    link.transport = transport = Breaking(peer, set(), set())
+    transport = Breaking(peer, set(), set())
+    link = linked(peer, transport=transport)
     with pytest.raises(NoAnswer):
         link.ask(R0)
     assert transport.renewed == 0

@@ -41,7 +41,7 @@ def test_an_answer_before_the_fence_is_dropped() -> None:
     assert link.ask(R0) == (0xA000,)
     assert peer.heard == [ASK_R0, STATUS, nonce(0), ASK_R0]
     assert link.counters.strays == 1
-    assert link.suspicions == 0  # it was owed
+    assert link.unsolicited == 0  # it was owed
 
 
 def test_an_answer_between_two_requests_puts_up_a_fence() -> None:
@@ -50,7 +50,7 @@ def test_an_answer_between_two_requests_puts_up_a_fence() -> None:
     assert link.ask(R0) == (0xA000,)
     assert link.ask(R1) == (0xA001,)
     assert peer.heard == [ASK_R0, nonce(0), ASK_R1]
-    assert link.suspicions == 1  # nobody asked for it
+    assert link.unsolicited == 1  # nobody asked for it
 
 
 def test_half_an_answer_left_over_is_not_glued_to_the_next() -> None:
@@ -153,7 +153,7 @@ def test_patience_has_an_end() -> None:
     for _ in range(6):
         with pytest.raises(NoAnswer):
             link.ask(R0)
-    assert 0.5 <= link.wait_s <= 4 * 0.5
+    assert 0.5 <= link.state.wait_s <= 4 * 0.5
 
 
 # --- a PLC without 4E -------------------------------------------------------------------------------
@@ -165,7 +165,7 @@ def test_a_plc_without_loopback_serves_a_clean_line(refuses: bool) -> None:
     notes: list[str] = []
     link = linked(peer, notes=notes)
     assert link.ask(R0) == (0xA000,)
-    assert link.fences.close() is False
+    assert link.fences.pass_last() is False
     assert "answers no loopback (4E)" in notes[0]
     assert link.ask(R0) == (0xA000,)
     assert link.counters.fences == 0
@@ -179,15 +179,15 @@ def test_a_plc_without_loopback_is_not_trusted_after_a_doubt() -> None:
     link = linked(peer)
     assert link.ask(R0) == (0xA000,)
     with pytest.raises(NoAnswer):
-        link.fences.close()
+        link.fences.pass_last()
 
 
 def test_a_loopback_that_was_answered_once_is_owed_ever_after() -> None:
     peer = Rules({ASK_R0: ZERO, nonce(1): lambda _: SILENCE, nonce(2): lambda _: SILENCE})
     link = linked(peer, retries=1)
-    assert link.fences.close() is True
+    assert link.fences.pass_last() is True
     with pytest.raises(NoAnswer):
-        link.fences.close()
+        link.fences.pass_last()
 
 
 def test_a_refused_fence_leaves_it_to_silence() -> None:

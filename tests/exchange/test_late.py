@@ -60,15 +60,15 @@ def test_it_is_answered_or_told_as_late(delay_s: float, request_: Request[Any]) 
         link = late(delay_s, retries=retries, warnings=warnings)
         error = failure_of(link, request_)
         if error is not None:
-            assert "its answers come, but late: after" in error.message
+            assert "its answers come late: after" in error.message
             assert "and --timeout is 0.5" in error.message
-            assert f"give --timeout {longer_timeout(link.hearing.late_s):g}" in str(error.hint)
-            assert error.details["late_s"] == pytest.approx(link.hearing.late_s, abs=0.001)
+            assert f"give --timeout {longer_timeout(link.state.late_s):g}" in str(error.hint)
+            assert error.details["late_s"] == pytest.approx(link.state.late_s, abs=0.001)
         else:
             (told,) = warnings
             assert told.startswith("answers come late: after ")
             assert "give --timeout" in told
-        assert delay_s - 0.01 <= link.hearing.late_s <= delay_s + 0.06
+        assert delay_s - 0.01 <= link.state.late_s <= delay_s + 0.06
 
 
 @pytest.mark.parametrize("delay_s", [0.55, 0.7, 0.9, 1.1, 1.3, 1.6, 1.9])
@@ -112,7 +112,7 @@ def test_no_late_answer_is_lost_with_its_connection(delay_s: float, request_: Re
 
 def test_one_that_is_later_than_anybody_listens_is_silent() -> None:
     link = late(30.0, retries=1)
-    with pytest.raises(NoAnswer, match="nothing heard"):
+    with pytest.raises(NoAnswer, match="nothing received"):
         link.ask(R0)
 
 
@@ -135,5 +135,5 @@ def test_it_is_never_told_as_sooner_than_the_time_out() -> None:
             link = Link(MemoryTransport(simulation.line()), FACON, 1, LineSettings(), warn=warnings.append)
             for _ in range(20):
                 failure_of(link, R0)
-            assert link.hearing.late_s == 0 or link.hearing.late_s > 0.5
+            assert link.state.late_s == 0 or link.state.late_s > 0.5
             assert len(warnings) <= 4

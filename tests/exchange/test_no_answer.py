@@ -60,7 +60,8 @@ def said(link: Link, request: object = R0) -> NoAnswer:
 def test_a_dead_line() -> None:
     error = said(linked(Script()))
     assert (
-        "to 'read registers' (46) in 1 try and 4 other requests, 2.6 s in all: nothing heard" in error.message
+        "to 'read registers' (46) in 1 try and 4 other requests, 2.6 s in all: nothing received"
+        in error.message
     )
     assert "is the PLC on and the cable in?" in str(error.hint)
     assert "9600 7E1" in str(error.hint)
@@ -69,26 +70,26 @@ def test_a_dead_line() -> None:
 
 def test_garbage() -> None:
     error = said(linked(Whatever(b"\x8a\xf0\x13\x91\x7f")))
-    assert "heard 5 bytes that are no frame" in error.message
+    assert "received 5 bytes that are no frame" in error.message
     assert "--baud, --format and --protocol" in str(error.hint)
     assert "termination" in str(error.hint)
 
 
 def test_frames_with_wrong_checksums() -> None:
     error = said(linked(Whatever(b"\x0201460AAAA00\x03")))
-    assert "heard a damaged frame (checksum: expected" in error.message
+    assert "received a damaged frame (checksum: expected" in error.message
     assert "--baud, --format" in str(error.hint)
 
 
 def test_another_station() -> None:
     error = said(linked(Stranger()))
-    assert "heard station 7 instead" in error.message
+    assert "received a frame of station 7" in error.message
     assert error.hint == "check --station"
 
 
 def test_the_echo_only() -> None:
     error = said(linked(Rules(echo=True, dead=True)))
-    assert "heard its own request only (the line echoes)" in error.message
+    assert "received its own request only (the line echoes)" in error.message
     assert "A and B" in str(error.hint)
 
 
@@ -100,7 +101,7 @@ def test_always_the_same_answer() -> None:
 
 def test_answers_of_a_wrong_length() -> None:
     error = said(linked(Rules({ASK_R0: frame("46012345678")})))
-    assert "it answers loopbacks, but not this" in error.message
+    assert "it answers loopbacks, but not this request" in error.message
     assert "expected 5 characters of data, got 9" in error.message
 
 
@@ -110,7 +111,7 @@ def test_a_program_that_is_not_offered() -> None:
         assert f"({request.command:02X}) in 4 tries" in error.message or "not known" in error.message
         assert "FBs papers list neither 4F nor 50" in str(error.hint) or "not known" in error.message
     error = said(linked(Rules()), ReadPage(0))
-    assert "it answers loopbacks, but not this; nothing heard" in error.message
+    assert "it answers loopbacks, but not this request; nothing received" in error.message
 
 
 def test_a_program_that_was_offered_and_no_more() -> None:
@@ -122,7 +123,7 @@ def test_a_program_that_was_offered_and_no_more() -> None:
 
 def test_a_live_plc_that_loses_this_one() -> None:
     error = said(linked(Rules()))
-    assert "it answers loopbacks, but not this; nothing heard" in error.message
+    assert "it answers loopbacks, but not this request; nothing received" in error.message
     assert "--timeout" in str(error.hint)
     assert "--retries" in str(error.hint)
 
@@ -134,7 +135,7 @@ def test_a_write_of_unknown_fate() -> None:
 
 
 def test_one_try() -> None:
-    assert "in 1 try, 2.0 s in all: nothing heard" in said(linked(Script(), retries=0)).message
+    assert "in 1 try, 2.0 s in all: nothing received" in said(linked(Script(), retries=0)).message
 
 
 def test_the_line_is_named_where_there_is_one() -> None:
@@ -145,7 +146,7 @@ def test_the_line_is_named_where_there_is_one() -> None:
         link.ask(Loopback(b"A"))
     assert caught.value.message.startswith(
         "no answer from station 9 on /dev/ttyUSB0 (19200 8N1) to 'read brief status' (40), "
-        "which goes before 'loopback' (4E)"
+        "which is sent before 'loopback' (4E)"
     )
-    assert "in 3 requests, 3.8 s in all: nothing heard" in caught.value.message
+    assert "in 3 requests, 3.8 s in all: nothing received" in caught.value.message
     assert isinstance(caught.value, LineError)

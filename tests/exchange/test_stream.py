@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fatektool.errors import LineError, LineReadOnly, NoAnswer, PlcRefused
-from fatektool.exchange.batch import ask_all, tell_all
+from fatektool.exchange.batch import read_all, write_all
 from fatektool.exchange.link import Link
 from fatektool.protocol.commands import ReadPage, WritePage
 from fatektool.protocol.fatek.facon.codec import FaconCodec
@@ -75,7 +75,7 @@ def order_of(events: Events, first: tuple[str, int], second: tuple[str, int]) ->
 
 def test_a_read_is_encoded_and_sent_before_the_answer_before_it_is_looked_at() -> None:
     events: Events = []
-    assert ask_all(watched(events), READS) == PAGES
+    assert read_all(watched(events), READS) == PAGES
     for page in range(1, len(PAGES) - 1):  # by the first, the line is found to have no echo
         order_of(events, ("encode", page + 1), ("decode", page))
         order_of(events, ("hear", page + 1), ("decode", page))
@@ -83,7 +83,7 @@ def test_a_read_is_encoded_and_sent_before_the_answer_before_it_is_looked_at() -
 
 def test_a_write_is_encoded_before_the_answer_before_it_is_looked_at_and_sent_behind_it() -> None:
     events: Events = []
-    tell_all(watched(events), WRITES)
+    write_all(watched(events), WRITES)
     for page in range(1, len(PAGES) - 1):  # by the first, the line is found to have no echo
         order_of(events, ("encode", page + 1), ("decode", page))
         order_of(events, ("decode", page), ("hear", page + 1))
@@ -93,14 +93,14 @@ def test_a_write_is_encoded_before_the_answer_before_it_is_looked_at_and_sent_be
 def test_writes_cost_an_exchange_each_and_no_more() -> None:
     peer = Rules(dict(zip(RAW_WRITES, [TAKEN] * len(PAGES), strict=True)))
     done: list[int] = []
-    tell_all(linked(peer), WRITES, done.append)
+    write_all(linked(peer), WRITES, done.append)
     assert peer.heard == RAW_WRITES
     assert done == [1, 2, 3, 4, 5, 6]
 
 
 def test_nothing_to_write_is_nothing_sent() -> None:
     peer = Rules()
-    tell_all(linked(peer), [])
+    write_all(linked(peer), [])
     assert peer.heard == []
 
 
@@ -115,7 +115,7 @@ def lost_once(raw: bytes) -> Rules:
 def test_a_lost_answer_is_read_back_and_what_took_is_not_sent_again(page: int) -> None:
     peer = lost_once(RAW_WRITES[page])
     peer.answers[ask_page(page)] = page_answer(PAGES[page])
-    tell_all(linked(peer), WRITES)
+    write_all(linked(peer), WRITES)
     assert [raw for raw in peer.heard if raw[3:5] == b"50"] == RAW_WRITES
     assert peer.heard.count(ask_page(page)) == 1
 
@@ -124,7 +124,7 @@ def test_a_lost_answer_is_read_back_and_what_took_is_not_sent_again(page: int) -
 def test_a_lost_answer_is_read_back_and_what_did_not_take_is_sent_again(page: int) -> None:
     peer = lost_once(RAW_WRITES[page])
     peer.answers[ask_page(page)] = page_answer(bytes(128) if page else b"\xff" * 128)
-    tell_all(linked(peer), WRITES)
+    write_all(linked(peer), WRITES)
     expected = [*RAW_WRITES[: page + 1], *RAW_WRITES[page:]]
     assert [raw for raw in peer.heard if raw[3:5] == b"50"] == expected
 
@@ -135,7 +135,7 @@ def test_a_refused_write_ends_it_and_nothing_behind_it_is_sent(page: int) -> Non
     peer.answers[RAW_WRITES[page]] = REFUSED
     done: list[int] = []
     with pytest.raises(PlcRefused):
-        tell_all(linked(peer), WRITES, done.append)
+        write_all(linked(peer), WRITES, done.append)
     assert peer.heard == RAW_WRITES[: page + 1]
     assert done == list(range(1, page + 1))
 
@@ -150,7 +150,7 @@ def test_what_is_no_acknowledgement_is_none(page: int, instead: bytes) -> None:
     peer = Rules(dict(zip(RAW_WRITES, [TAKEN] * len(PAGES), strict=True)))
     peer.answers[RAW_WRITES[page]] = lambda asked: soon(TAKEN if asked else instead)
     peer.answers[ask_page(page)] = page_answer(b"\xaa" * 128)
-    tell_all(linked(peer), WRITES)
+    write_all(linked(peer), WRITES)
     assert [raw for raw in peer.heard if raw[3:5] == b"50"] == [*RAW_WRITES[: page + 1], *RAW_WRITES[page:]]
 
 
@@ -158,7 +158,7 @@ def test_a_plc_that_falls_silent_ends_it_with_what_is_not_known() -> None:
     peer = Rules(dict(zip(RAW_WRITES[:3], [TAKEN] * 3, strict=True)), loopback=False)
     done: list[int] = []
     with pytest.raises(NoAnswer):
-        tell_all(linked(peer, retries=1), WRITES, done.append)
+        write_all(linked(peer, retries=1), WRITES, done.append)
     assert done == [1, 2, 3]
     assert RAW_WRITES[4] not in peer.heard
 
@@ -166,9 +166,9 @@ def test_a_plc_that_falls_silent_ends_it_with_what_is_not_known() -> None:
 def test_a_read_only_line_takes_no_write_even_in_a_stream() -> None:
     peer = Rules(dict(zip(RAW_WRITES, [TAKEN] * len(PAGES), strict=True)))
     link = Link(MemoryTransport(peer), FaconCodec(), 1, LineSettings(), read_only=True)
-    link.echoes = False
+    link.state.echoes = False
     with pytest.raises(LineReadOnly):
-        tell_all(link, WRITES)
+        write_all(link, WRITES)
     assert peer.heard == []
 
 
@@ -190,7 +190,7 @@ def test_acknowledged_writes_over_a_bad_line_are_in_the_plc(kind: str, often: fl
 
     link = Link(MemoryTransport(simulation.line()), FaconCodec(), 1, LineSettings(), retries=2)
     try:
-        tell_all(link, todo, count)
+        write_all(link, todo, count)
     except LineError:
         assert done < len(todo)
     else:

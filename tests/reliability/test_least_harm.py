@@ -248,8 +248,8 @@ def test_no_way_through_a_link_lets_a_write_out(request_: Request[None]) -> None
     """Whichever command forgot to look: not a byte goes out, neither fence nor question before it."""
     ear = Ear()
     link = Link(MemoryTransport(ear), FACON, 1, LineSettings(), read_only=True)
-    link.hearing.doubt = True
-    for way in (link.ask, link.try_once, link.broadcast):
+    link.receiver.needs_fence = True
+    for way in (link.ask, link.attempts.once, link.broadcast):
         with pytest.raises(LineReadOnly, match=f"{request_.command:02X}"):
             way(request_)
     assert ear.heard == []

@@ -186,7 +186,7 @@ def test_a_doubt_is_handed_on_once(tmp_path: Path) -> None:
         found = []
         for _ in range(2):
             with connect(target, timeout_s=0.01, retries=0) as plc:
-                found.append(plc.link.hearing.doubt)
+                found.append(plc.link.receiver.needs_fence)
                 with pytest.raises(LineError):
                     plc.read_registers(Element.parse("R9"), 1)  # no fence comes down
         assert found == [True, False]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fatektool.errors import PlcRefused
-from fatektool.exchange.batch import ask_all, ask_until_refused, proven
+from fatektool.exchange.batch import proven, read_all, read_until_refused
 from fatektool.jobs.elements.division import Division, Refusals
 from fatektool.protocol.commands import MAX_DISCRETES, Command, ReadDisabled
 
@@ -43,7 +43,7 @@ def _read(plc: Plc, wanted: list[Element], *, fenced: bool) -> tuple[dict[Elemen
         while requests:
             if fenced:
                 plc.link.fence(requests[0])
-            answers, refusal = ask_until_refused(plc.link, requests[:1] if fenced else requests)
+            answers, refusal = read_until_refused(plc.link, requests[:1] if fenced else requests)
             for request, bits in zip(requests, answers, strict=False):
                 flags.update({request.first.after(place): bit for place, bit in enumerate(bits)})
             requests = requests[len(answers) + (refusal is not None) :]
@@ -54,7 +54,7 @@ def _read(plc: Plc, wanted: list[Element], *, fenced: bool) -> tuple[dict[Elemen
         if fenced:
             plc.link.fence(request)
         try:
-            ((flags[element],),) = ask_all(plc.link, [request])
+            ((flags[element],),) = read_all(plc.link, [request])
         except PlcRefused as error:
             return error.message
         return None

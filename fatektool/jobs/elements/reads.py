@@ -12,7 +12,7 @@ from itertools import chain
 from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.errors import PlcRefused
-from fatektool.exchange.batch import ask_all, ask_until_refused, proven
+from fatektool.exchange.batch import proven, read_all, read_until_refused
 from fatektool.jobs.elements.division import Division, Refusals
 from fatektool.jobs.elements.extent import ask_limits, excluded, extent_of, neighbours
 from fatektool.planner import Values, plan_reads, turnaround_bytes
@@ -180,7 +180,7 @@ class _Reader:
             some = requests[:1] if self._fenced else requests
             if self._fenced:
                 self._plc.link.fence(some[0])
-            answers, refusal = ask_until_refused(self._plc.link, some)
+            answers, refusal = read_until_refused(self._plc.link, some)
             for request, answer in zip(some, answers, strict=False):
                 self._take(request, answer)
             rest = requests[len(answers) :]
@@ -202,7 +202,7 @@ class _Reader:
         if self._fenced:
             self._plc.link.fence(request)
         try:
-            (answer,) = ask_all(self._plc.link, [request])
+            (answer,) = read_all(self._plc.link, [request])
         except PlcRefused as error:
             return error.message
         self._take(request, answer)

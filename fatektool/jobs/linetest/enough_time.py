@@ -56,14 +56,14 @@ def find_enough_time(plc: Plc, late_s: float) -> EnoughTime:
     tried = EnoughTime(timeout_s, 0, 0, 0.0)
     for _ in range(_MOST_TRIES):
         _wait_for_quiet(plc, timeout_s)
-        link.timeout_s = timeout_s
+        link.state.timeout_s = timeout_s
         result = run_loopback(plc, _TRY)
         if result.ended == "interrupted":
             raise KeyboardInterrupt
         total = result.total
         slowest_s = (result.turnaround.summary_ms()["max"] or 0.0) / 1000
         if total.ok == total.sent:
-            link.timeout_s = min(timeout_s, longer_timeout(slowest_s))  # all of them came in that, too
+            link.state.timeout_s = min(timeout_s, longer_timeout(slowest_s))  # all of them came in that, too
             return EnoughTime(link.timeout_s, total.sent, total.ok, slowest_s)
         tried = EnoughTime(timeout_s, total.sent, total.ok, slowest_s)
         timeout_s = min(max(longer_timeout(result.heard.late_s), 2 * timeout_s), _LONGEST_S)
@@ -73,11 +73,11 @@ def find_enough_time(plc: Plc, late_s: float) -> EnoughTime:
 
 
 def _wait_for_quiet(plc: Plc, quiet_s: float) -> None:
-    """Let come what is still on its way."""
-    hearing, clock = plc.link.hearing, plc.link.transport.clock
+    """Receive what may still come."""
+    receiver, clock = plc.link.receiver, plc.link.transport.clock
     for _ in range(_QUIET_TRIES):
-        heard = hearing.counters.bytes_heard
-        hearing.listen_until(clock() + quiet_s)
-        if hearing.counters.bytes_heard == heard:
+        received = plc.link.counters.bytes_received
+        receiver.listen_until(clock() + quiet_s)
+        if plc.link.counters.bytes_received == received:
             break
-    hearing.fenced()
+    receiver.fence_passed()

@@ -46,7 +46,7 @@ class Case:
     @classmethod
     def of(cls, result: LoopbackResult, link: Link) -> Case:
         """The case of a test over this link."""
-        return cls(result, link.line, link.station, link.codec, over_network(link))
+        return cls(result, link.line, link.station, link.codec, over_network(link.transport))
 
     @property
     def silent(self) -> bool:

@@ -173,4 +173,4 @@ def _difference(a: Reading, b: Reading) -> str | None:
 
 def _trouble(plc: Plc) -> int:
     """The line's errors so far; the same twice means a clean line in between."""
-    return plc.link.counters.trouble + plc.link.suspicions
+    return plc.link.counters.trouble + plc.link.unsolicited

@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from fatektool.exchange.link import Link
+from fatektool.exchange.receiver import Receiver
 from tests.plant import cut_after, error_of, recorded
 
 if TYPE_CHECKING:
+    from fatektool.exchange.state import LinkState
     from tests.cli.running import Cli
     from tests.plant import Plant
 
@@ -129,13 +130,13 @@ def test_a_line_that_is_dead_from_the_first_request(plant: Plant, monkeypatch: p
 def test_a_line_that_dies_before_the_first_write(plant: Plant, monkeypatch: pytest.MonkeyPatch) -> None:
     """An answer was still owed to the process before, so a fence goes first, and finds nobody."""
     cut_after(monkeypatch, 0)
-    begin = Link.begin_with_echo
+    init = Receiver.__init__
 
-    def with_a_doubt(link: Link) -> None:
-        begin(link)
-        link.hearing.doubt = True
+    def needing_a_fence(receiver: Receiver, state: LinkState) -> None:
+        init(receiver, state)
+        receiver.needs_fence = True
 
-    monkeypatch.setattr(Link, "begin_with_echo", with_a_doubt)
+    monkeypatch.setattr(Receiver, "__init__", needing_a_fence)
     line = error_of(plant.cli("write", "R0=7"), 3)
     assert "nothing was written" in line
     assert "may be written" not in line

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from fatektool.errors import NoAnswer, PlcRefused
-from fatektool.exchange.batch import ask_all
+from fatektool.exchange.batch import read_all
 from fatektool.protocol.commands import (
     Control,
     ControlDiscrete,
@@ -91,7 +91,7 @@ def test_a_fence_is_not_of_the_shape_of_what_is_asked_next() -> None:
     link = linked(peer)
     assert link.ask(R100) == (100,)
     assert link.ask(R200) == (200,)
-    assert ask_all(link, [R100, R200, R100]) == [(100,), (200,), (100,)]
+    assert read_all(link, [R100, R200, R100]) == [(100,), (200,), (100,)]
 
 
 @pytest.mark.parametrize("registers_only", [False, True])
@@ -174,7 +174,7 @@ def test_over_tcp_the_number_tells_and_no_fence_is_put_up() -> None:
     assert link.ask(R200) == (200,)
     assert [int.from_bytes(raw[:2], "big") for raw in peer.heard] == [1, 2, 3]
     assert link.counters.fences == 0
-    assert ask_all(link, [R100, R200] * 5) == [(100,), (200,)] * 5
+    assert read_all(link, [R100, R200] * 5) == [(100,), (200,)] * 5
     assert len(peer.heard) == 13  # nothing is asked twice
 
 
@@ -257,7 +257,7 @@ def test_an_rtu_line_is_silent_for_three_and_a_half_characters() -> None:
     link = linked(peer, serial=True)
     for _ in range(3):
         link.ask(R100)
-    ask_all(link, [R100, R200] * 4)
+    read_all(link, [R100, R200] * 4)
     gaps = [after - before - 0.01 for before, after in zip(peer.times, peer.times[1:], strict=False)]
     assert min(gaps) == pytest.approx(3.5 * LINE.byte_time_s)
     assert max(gaps) == pytest.approx(3.5 * LINE.byte_time_s)

@@ -105,7 +105,7 @@ def test_who_is_busy_is_asked_again_after_growing_pauses(
     slave = Slave(codec)
     link = linked(slave, codec)
     if link.echoes is None:
-        link.learn_echo()
+        link.attempts.learn_echo()
     slave.asked.clear()
     slave.times.clear()
     slave.instead = lambda number, _: code if number <= 2 else None
@@ -196,7 +196,7 @@ def test_a_write_that_did_not_leave_the_gateway_is_not_looked_for() -> None:
         assert {asked[0] for asked in slave.asked} == functions
         assert ("whether the PLC took it is not known" in caught.value.message) == (code == 11)
         assert f"the gateway says: {GATEWAY[code]} (exception {code:02X})" in caught.value.message
-        assert "nothing heard" not in caught.value.message
+        assert "nothing received" not in caught.value.message
         assert "gateway" in str(caught.value.hint)
 
 
@@ -207,7 +207,7 @@ def test_answers_with_another_number_are_told_as_such() -> None:
     peer = Peer(lambda request, _: [(0.01, b"\x12\x34" + request[2:4] + bytes.fromhex("0005 01 03 02 0007"))])
     with pytest.raises(NoAnswer) as caught:
         linked(peer, TCP).ask(FROM_R105)
-    assert "heard an answer with transaction number 1234, expected 0004, that of the request" in str(
+    assert "received an answer with transaction number 1234, expected 0004, that of the request" in str(
         caught.value
     )
     assert "must repeat the number" in str(caught.value.hint)

@@ -1,7 +1,7 @@
 """The exchange of 4E: a PLC sends back what it is sent, in frames of its protocol.
 
 A request's echo and its answer are the same by content. So before the first exchange another request is sent,
-by which an echo is known (``Link.learn_echo``).
+by which an echo is known (``Attempts.learn_echo``).
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ class PlcExchanger(Exchanger):
         super().__init__(link, heard)
         self.characters = link.codec.loopback_alphabet
         self._seen: set[str] = set()  # in this exchange
-        link.hearing.on_stray = self._on_stray
-        link.hearing.on_bad_bytes = self._on_bad_bytes
+        link.receiver.on_stray = self._on_stray
+        link.receiver.on_bad_bytes = self._on_bad_bytes
 
     @property
-    def bytes_heard(self) -> int:
+    def bytes_received(self) -> int:
         """All bytes that came so far."""
-        return self._link.counters.bytes_heard
+        return self._link.counters.bytes_received
 
     @property
     def echoes(self) -> bool | None:
@@ -43,16 +43,16 @@ class PlcExchanger(Exchanger):
 
     def begin(self) -> None:
         """Learn whether the line echoes. From now on every answer has the same time."""
-        self._link.patient = False
-        self._link.hearing.late_s = 0.0
+        self._link.state.extends_wait = False
+        self._link.state.late_s = 0.0
         self._learn_echo()
 
     def _learn_echo(self) -> bool | None:
         """By a request that cannot be mistaken for its echo; where nobody answers nothing is learnt: None."""
         for _ in range(_LEARNING_TRIES):
-            self._link.hearing.drop_input()
+            self._link.receiver.drop_input()
             try:
-                self._link.learn_echo()
+                self._link.attempts.learn_echo()
             except TransportClosed:
                 raise
             except LineError:
@@ -63,7 +63,7 @@ class PlcExchanger(Exchanger):
 
     def end(self) -> None:
         """The next one may be given more time again."""
-        self._link.patient = True
+        self._link.state.extends_wait = True
 
     def frame_bytes(self, data: bytes) -> int:
         """How many bytes carry these characters, one way."""
@@ -71,18 +71,18 @@ class PlcExchanger(Exchanger):
 
     def listen_until(self, moment: float) -> None:
         """Wait until a moment of the transport's clock, and look at whatever comes unasked."""
-        self._link.hearing.listen_until(moment)
+        self._link.receiver.listen_until(moment)
 
     def ready(self) -> None:
         """Look at what lies in the input."""
-        self._link.hearing.drop_input()
+        self._link.receiver.drop_input()
         self._seen.clear()
 
     def _try(self, data: bytes) -> str | None:
         link, request = self._link, Loopback(data)
-        heard, echoes = link.counters.bytes_heard, link.counters.echoes
+        heard, echoes = link.counters.bytes_received, link.counters.echoes
         try:
-            link.try_once(request)
+            link.attempts.once(request)
             if link.echoes is None:  # was it an answer or an echo?
                 return None if self._learn_echo() is False else "timeout"
         except PlcRefused:  # or a late answer of one character, which looks the same
@@ -91,7 +91,7 @@ class PlcExchanger(Exchanger):
             raise
         except (TransportError, FrameError):
             echo_bytes = link.codec.answer_bytes(request) * (link.counters.echoes - echoes)
-            return self._worst_heard(link.counters.bytes_heard - heard - echo_bytes)
+            return self._worst_heard(link.counters.bytes_received - heard - echo_bytes)
         return None
 
     def _worst_heard(self, heard_bytes: int) -> str:
@@ -116,7 +116,7 @@ class PlcExchanger(Exchanger):
                 heard.twice += 1
             else:
                 heard.late += 1
-                heard.late_s = max(heard.late_s, self._link.hearing.late_s)
+                heard.late_s = max(heard.late_s, self._link.state.late_s)
             self._seen.add("stale")
         else:
             self._seen.add("mismatch")

@@ -32,7 +32,7 @@ class RawExchanger(Exchanger):
     """
 
     echoes = None
-    bytes_heard = 0
+    bytes_received = 0
 
     def __init__(self, link: Link, heard: Heard, frame: RawFrame) -> None:
         super().__init__(link, heard)
@@ -57,7 +57,7 @@ class RawExchanger(Exchanger):
     def ready(self) -> None:
         """Look at what lies in the input."""
         found = self._transport.drain()
-        self.bytes_heard += len(found)
+        self.bytes_received += len(found)
         self._overhear(found)
 
     def _try(self, data: bytes) -> str | None:
@@ -86,7 +86,7 @@ class RawExchanger(Exchanger):
                 data = self._transport.read(_READ_BYTES, rest)
             except TransportTimeout:
                 continue
-            self.bytes_heard += len(data)
+            self.bytes_received += len(data)
             got = (got + data)[-_MOST_KEPT:]
         return got
 

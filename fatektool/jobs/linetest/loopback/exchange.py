@@ -50,7 +50,7 @@ class Exchanger(ABC):
 
     @property
     @abstractmethod
-    def bytes_heard(self) -> int:
+    def bytes_received(self) -> int:
         """All bytes that came so far."""
 
     @property

@@ -84,7 +84,7 @@ class _Test:
         result, exchanger = self.result, self._exchanger
         plan = result.plan
         exchanger.begin()
-        self._heard_before = exchanger.bytes_heard
+        self._heard_before = exchanger.bytes_received
         self._began = due = self._clock()
         self._end = inf if plan.duration_s is None else self._began + plan.duration_s
         for data in payloads(plan.sizes, plan.patterns, exchanger.characters, plan.seed):
@@ -108,7 +108,7 @@ class _Test:
         """What is not answered yet may come late, and is no loss then."""
         if self.result.plan.raw is not None or not self._exchanger.unanswered:
             return  # of a frame of one's own nothing tells what it answers
-        if self.result.heard.late or not self._exchanger.bytes_heard:
+        if self.result.heard.late or not self._exchanger.bytes_received:
             self._exchanger.listen_until(self._clock() + min(3 * self.result.timeout_s, _LISTENED_S))
 
     def end(self) -> None:
@@ -120,7 +120,7 @@ class _Test:
         """Bring the figures up to date that are not counted by exchange."""
         result, exchanger = self.result, self._exchanger
         result.duration_s = self._clock() - self._began
-        result.bytes_received = exchanger.bytes_heard - self._heard_before
+        result.bytes_received = exchanger.bytes_received - self._heard_before
         result.wire_s = (result.bytes_sent + result.bytes_received) * self._byte_time_s
         result.echoes = exchanger.echoes
 

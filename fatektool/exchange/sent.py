@@ -1,0 +1,32 @@
+"""A request as it is sent, with what its answer must carry."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from fatektool.protocol.codec import Frame
+
+
+class Sent(NamedTuple):
+    """A request as it is sent, with what its answer must carry.
+
+    Attributes:
+        raw: the frame.
+        station: the station that is asked.
+        code: the command code in the frame.
+        number: the transaction number; 0 where the protocol has none.
+        size: expected length of the answer in bytes.
+        data: the data that the answer to a loopback must return; None for any other request.
+    """
+
+    raw: bytes
+    station: int
+    code: int
+    number: int
+    size: int
+    data: bytes | None
+
+    def answered_by(self, frame: Frame) -> bool:
+        """True if station, command and transaction number of a frame are those of the answer."""
+        return (frame.station, frame.command, frame.number) == (self.station, self.code, self.number)
