@@ -1,8 +1,8 @@
 """Property tests: the same cases in each run, unless new ones are looked for.
 
 The default run draws the same cases each time, on every machine, and keeps nothing on disk. ``pytest -m
-slow`` runs all property tests too, with cases drawn from a new seed, which it prints first, and again if one
-fails::
+slow`` runs all property tests too, with four times as many cases, drawn from a new seed, which it prints
+first, and again if one fails::
 
     python -m pytest -m slow                             # a new seed
     python -m pytest -m slow --hypothesis-seed 7 PATH    # the cases of seed 7 again
@@ -18,6 +18,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from hypothesis import HealthCheck, is_hypothesis_test, settings
 
+from tests.night import AT_NIGHT
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
@@ -32,8 +34,8 @@ _ALWAYS: dict[str, Any] = {
     "print_blob": True,
     "suppress_health_check": [HealthCheck.too_slow],
 }
-settings.register_profile("same", derandomize=True, **_ALWAYS)
-settings.register_profile("random", derandomize=False, **_ALWAYS)
+settings.register_profile("same", derandomize=True, max_examples=25, **_ALWAYS)
+settings.register_profile("random", derandomize=False, max_examples=100, **_ALWAYS)
 
 
 def _looks_for_new_cases(config: pytest.Config) -> bool:
@@ -45,6 +47,8 @@ def _looks_for_new_cases(config: pytest.Config) -> bool:
 @pytest.hookimpl(tryfirst=True)  # before Hypothesis reads its seed, and before a test module is imported
 def pytest_configure(config: pytest.Config) -> None:
     random = _looks_for_new_cases(config)
+    if random:
+        os.environ[AT_NIGHT] = "1"
     settings.load_profile("random" if random else "same")
     if random and config.option.hypothesis_seed is None:
         config.option.hypothesis_seed = os.environ.setdefault(_SEED, str(secrets.randbelow(1 << 32)))

@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.root import ROOT
+
 FAILING = """
 from hypothesis import given, strategies as st
 
@@ -30,7 +32,11 @@ def cases(folder: Path, *words: str) -> tuple[str, str]:
     """The cases that a run draws, and what it prints."""
     (folder / "cases").unlink(missing_ok=True)
     command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-p", "_hypothesis_pytestplugin"]
-    environment = os.environ | {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1", "PYTEST_ADDOPTS": ""}
+    environment = os.environ | {
+        "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1",
+        "PYTEST_ADDOPTS": "",
+        "PYTHONPATH": str(ROOT),
+    }
     done = subprocess.run(
         [*command, *words], cwd=folder, capture_output=True, text=True, check=False, env=environment
     )

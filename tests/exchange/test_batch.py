@@ -31,6 +31,7 @@ from tests.exchange.peer import (
     read_registers,
     register,
 )
+from tests.night import examples
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -267,7 +268,7 @@ def read_simulated(
 
 @pytest.mark.parametrize("echo", [[], ["echo=1"]], ids=["", "echo"])
 @pytest.mark.parametrize("kind", KINDS)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(
     probability=st.sampled_from([0.02, 0.1, 0.3, 1.0]),
     seed=st.integers(0, 1 << 32),
@@ -292,7 +293,7 @@ def test_a_slightly_bad_line_still_gives_the_program(kind: str) -> None:
 
 
 @pytest.mark.parametrize("other", ["flip", "truncate", "noise", "late", "slow", "wrong-station"])
-@settings(max_examples=50, deadline=None, derandomize=True)
+@settings(max_examples=examples(50), deadline=None, derandomize=True)
 @given(seed=st.integers(0, 1 << 32), program=st.sampled_from(["distinct", "mostly-empty"]))
 def test_second_copies_and_a_rare_fault_never_make_a_wrong_page(other: str, seed: int, program: str) -> None:
     got = read_simulated(PROGRAMS[program], ["duplicate=0.05", f"{other}=0.05"], seed, 9600)

@@ -17,6 +17,7 @@ from fatektool.simulator.build import build_simulation
 from fatektool.transport.base import LineSettings
 from fatektool.transport.memory import MemoryTransport
 from tests.exchange.peer import SILENCE, Pieces, Rules, ask_page, frame, linked, page_answer, soon
+from tests.night import examples
 
 if TYPE_CHECKING:
     from fatektool.protocol.codec import Frame
@@ -177,7 +178,7 @@ def test_a_read_only_line_takes_no_write_even_in_a_stream() -> None:
     often=st.sampled_from([0.02, 0.1, 0.3]),
     seed=st.integers(0, 1 << 16),
 )
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 def test_acknowledged_writes_over_a_bad_line_are_in_the_plc(kind: str, often: float, seed: int) -> None:
     simulation = build_simulation(ladder_words=600, faults=[f"{kind}={often}"], seed=seed)
     device = simulation.plcs[1]

@@ -23,6 +23,7 @@ from fatektool.protocol.commands import (
 from fatektool.protocol.elements import KINDS, Element
 from fatektool.protocol.fatek.facon.codec import FACON
 from fatektool.protocol.fatek.mseries.codec import MSERIES
+from tests.night import examples
 from tests.planner.exhaustive import wire_bytes
 from tests.planner.sets import named
 from tests.plcs import simulated
@@ -117,7 +118,7 @@ def _every_path(graph: dict[int, list[Edge]], end: int) -> list[tuple[float, int
     st.sampled_from([0.0, 1.0, 19.0, 134.5, 1019.0]),
     st.integers(1, 9),
 )
-@settings(deadline=None, max_examples=300)
+@settings(deadline=None, max_examples=examples(300))
 def test_the_least_of_all_paths(seed: int, end: int, base: float, capacity: int) -> None:
     random = Random(seed)  # noqa: S311
     graph = _graph(random, end)

@@ -14,6 +14,7 @@ from fatektool.planner.edges import Edges
 from fatektool.protocol.commands import ReadDiscretes, ReadMixed, ReadRegisters, Request
 from fatektool.protocol.elements import KINDS, Element
 from fatektool.protocol.fatek.facon.codec import FACON, parse_frame
+from tests.night import examples, night
 from tests.planner.exhaustive import places_of, wire_bytes
 from tests.planner.plain import merged, one_each
 from tests.planner.sets import TURNAROUNDS, element_sets, named, scattered, side_by_side
@@ -74,7 +75,7 @@ def held(one: Simulated, element: Element) -> int:
 
 
 @given(st.data(), turnarounds)
-@settings(deadline=None, max_examples=150)
+@settings(deadline=None, max_examples=examples(150))
 def test_every_value_is_right(filled: Simulated, data: st.DataObject, turnaround: float) -> None:
     elements = data.draw(element_sets(most=30, areas=AREAS))
     plan = plan_reads(elements, FACON, turnaround=turnaround, limits=AREAS)
@@ -87,7 +88,7 @@ def test_every_value_is_right(filled: Simulated, data: st.DataObject, turnaround
 
 
 @given(element_sets(most=40), turnarounds)
-@settings(deadline=None, max_examples=150)
+@settings(deadline=None, max_examples=examples(150))
 def test_all_is_covered_and_no_element_is_torn(elements: list[Element], turnaround: float) -> None:
     plan = plan_reads(elements, FACON, turnaround=turnaround)
     for element in elements:
@@ -99,7 +100,7 @@ def test_all_is_covered_and_no_element_is_torn(elements: list[Element], turnarou
 
 
 @given(element_sets(most=20), turnarounds, st.randoms(use_true_random=False))
-@settings(deadline=None, max_examples=80)
+@settings(deadline=None, max_examples=examples(80))
 def test_order_and_repetition_do_not_matter(
     elements: list[Element], turnaround: float, random: Random
 ) -> None:
@@ -111,7 +112,7 @@ def test_order_and_repetition_do_not_matter(
 
 
 @given(element_sets(most=25), st.integers(0, 400), turnarounds)
-@settings(deadline=None, max_examples=150)
+@settings(deadline=None, max_examples=examples(150))
 def test_past_the_limits_only_what_is_wanted(elements: list[Element], limit: int, turnaround: float) -> None:
     """Also where something past them is wanted: it alone is read there."""
     limits = dict.fromkeys("XYMSTCRDF", limit)
@@ -125,7 +126,7 @@ def test_past_the_limits_only_what_is_wanted(elements: list[Element], limit: int
 
 
 @given(element_sets(most=12), element_sets(most=12), turnarounds)
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=examples(60))
 def test_more_elements_never_cost_less(
     elements: list[Element], others: list[Element], turnaround: float
 ) -> None:
@@ -138,7 +139,7 @@ def test_more_elements_never_cost_less(
 
 
 @given(element_sets(most=40), turnarounds)
-@settings(deadline=None, max_examples=100)
+@settings(deadline=None, max_examples=examples(100))
 def test_never_dearer_than_the_plain_rules(elements: list[Element], turnaround: float) -> None:
     cost = wire_bytes(plan_reads(elements, FACON, turnaround=turnaround), FACON, turnaround)
     for rule in (one_each, merged):
@@ -308,7 +309,7 @@ class Work:
         monkeypatch.setattr(paths, "_Label", counted_label)
 
 
-@pytest.mark.parametrize("turnaround", [0.0, 10.0, 115.0, 920.0])
+@pytest.mark.parametrize("turnaround", [0.0, night(10.0), night(115.0), 920.0])
 @pytest.mark.parametrize(
     ("name", "edges", "labels"),
     [

@@ -12,6 +12,7 @@ from fatektool.protocol.commands import ReadRegisters
 from fatektool.protocol.elements import KINDS, Element, Stretch
 from fatektool.protocol.fatek.facon.codec import FACON, FaconCodec
 from fatektool.protocol.registry import CODECS
+from tests.night import examples
 
 SYMBOLS = ["X", "M", "WM", "DWY", "R", "D", "DR", "RT", "RC", "DRC"]
 
@@ -29,7 +30,7 @@ def stretches(draw: st.DrawFn) -> Stretch:
     codec=st.sampled_from(["facon", "mseries"]),
     turnaround=st.sampled_from([0.0, 9.6, 900.0]),
 )
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 def test_a_plan_of_stretches_is_that_of_their_elements(
     parts: list[Stretch], singles: list[Element], codec: str, turnaround: float
 ) -> None:

@@ -16,6 +16,7 @@ from fatektool.planner.edges import Edges
 from fatektool.protocol.commands import Request, WriteDiscretes, WriteMixed, WriteRegisters
 from fatektool.protocol.elements import KINDS, Element
 from fatektool.protocol.fatek.facon.codec import FACON, parse_frame
+from tests.night import examples
 from tests.planner.exhaustive import places_of
 from tests.planner.sets import TURNAROUNDS, apart, element_sets, named, scattered
 from tests.plcs import simulated
@@ -74,7 +75,7 @@ def written(before: dict[str, list[int]], items: list[tuple[Element, int]]) -> d
 
 
 @given(st.data(), turnarounds, st.integers(0, 99))
-@settings(deadline=None, max_examples=120)
+@settings(deadline=None, max_examples=examples(120))
 def test_what_is_asked_is_written_and_nothing_else(data: st.DataObject, turnaround: float, seed: int) -> None:
     random = Random(seed)  # noqa: S311
     elements = [
@@ -96,7 +97,7 @@ def test_what_is_asked_is_written_and_nothing_else(data: st.DataObject, turnarou
 
 
 @given(element_sets(most=40), turnarounds)
-@settings(deadline=None, max_examples=150)
+@settings(deadline=None, max_examples=examples(150))
 def test_each_place_once_and_no_element_torn(elements: list[Element], turnaround: float) -> None:
     """An element written in two parts would hold a wrong value for a scan."""
     elements = apart(elements)
@@ -113,7 +114,7 @@ def test_each_place_once_and_no_element_torn(elements: list[Element], turnaround
 
 
 @given(element_sets(most=20), turnarounds, st.randoms(use_true_random=False))
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=examples(60))
 def test_order_does_not_matter(elements: list[Element], turnaround: float, random: Random) -> None:
     items = [(element, random.randrange(1 << element.kind.bits)) for element in apart(elements)]
     plan = plan_writes(items, FACON, turnaround=turnaround)

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from fatektool.errors import DataError
 from fatektool.program.headers.families import read_header
 from fatektool.program.image import Program
+from tests.night import examples
 from tests.program.fbs import CAPACITY, CODE, PRINTED, fbs_program, pages_of, words_of
 
 WORD = st.integers(0, 0xFFFF)
@@ -17,7 +18,7 @@ DIGITS = st.from_regex(rb"[0-9]{4}", fullmatch=True)
 
 
 @given(main=FEW, sub=FEW, labels=FEW, ror=FEW, digits=DIGITS, swapped=st.booleans())
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_an_image_whose_header_agrees(
     main: tuple[int, ...],
     sub: tuple[int, ...],

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from fatektool.errors import DataError, UsageError
 from fatektool.simulator.listen.servers import Server, running
 from fatektool.simulator.replay import Recorded, Replay
+from tests.night import examples
 from tests.simulator.listen.listeners import connected, place, read
 from tests.simulator.wire import frame
 
@@ -293,7 +294,7 @@ def test_through_a_door(
         assert exchange(PAGE, len(TWO)) == TWO
 
 
-@settings(max_examples=50)
+@settings(max_examples=examples(50))
 @given(st.lists(st.tuples(st.booleans(), st.binary(max_size=12)), max_size=8), st.binary(max_size=40))
 def test_any_recording_and_any_bytes(pieces: list[tuple[bool, bytes]], data: bytes) -> None:
     records = [Recorded(float(at), *piece) for at, piece in enumerate(pieces)]

@@ -14,6 +14,7 @@ from fatektool.jobs.elements.writes import write_elements
 from fatektool.protocol.elements import Element
 from fatektool.simulator.models import MODELS
 from fatektool.simulator.refusal import Refusal, RefusalCode
+from tests.night import examples
 from tests.plant import cut_after, small, with_holes
 
 
@@ -49,7 +50,7 @@ def test_what_is_refused_does_not_lose_the_others(wanted: str, refused: str) -> 
     assert reading.requests <= made.plc.link.counters.exchanges
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(
     st.sets(st.integers(0, 90)),
     st.lists(st.integers(0, 90), min_size=1, unique=True),

@@ -13,6 +13,7 @@ from fatektool.jobs.elements.disabled import read_disabled
 from fatektool.jobs.elements.reads import read_elements
 from fatektool.jobs.elements.writes import write_elements
 from fatektool.protocol.elements import KINDS, Element
+from tests.night import examples
 from tests.plant import small
 
 if TYPE_CHECKING:
@@ -122,7 +123,7 @@ def apart(wanted: list[Element]) -> list[Element]:
     return found
 
 
-@settings(max_examples=120, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=examples(120), deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(st.lists(STEPS, min_size=1, max_size=12))
 def test_client_and_simulator_agree_with_a_dict(steps: list[tuple[object, ...]]) -> None:
     made = small(model="fbs-20mc")
@@ -173,7 +174,7 @@ def test_client_and_simulator_agree_with_a_dict(steps: list[tuple[object, ...]])
     assert set(errors.errors) == {each for each in discretes if not model.has(each)}
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(
     st.lists(elements(("R", "DR", "M", "WM", "DWM", "X")), min_size=1, max_size=40),
     st.sets(st.integers(0, 8100)),

@@ -22,6 +22,7 @@ from fatektool.planner import plan_reads
 from fatektool.protocol.elements import Element
 from fatektool.protocol.fatek.facon.codec import FACON
 from fatektool.simulator.refusal import Refusal, RefusalCode
+from tests.night import examples, seeds
 from tests.plant import recorded, small, snapshot_of, with_holes
 
 if TYPE_CHECKING:
@@ -93,7 +94,7 @@ LENGTHS = st.sampled_from([1, 1, 2, 7, 40, 63, 130, 400, 900])
 PARTS = st.lists(st.tuples(st.integers(0, 1500), LENGTHS), max_size=8)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(PARTS, st.sets(st.integers(0, 1500), max_size=40), st.sampled_from([1, 1, 2, 5]))
 def test_any_gaps(gaps: list[tuple[int, int]], more: set[int], every: int) -> None:
     holes = more.union(*(range(first, first + length) for first, length in gaps))
@@ -101,7 +102,7 @@ def test_any_gaps(gaps: list[tuple[int, int]], more: set[int], every: int) -> No
     check_reading(read_elements(with_holes(holes).plc, registers(asked)), asked, holes)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(st.sets(st.integers(0, 127)), st.booleans())
 def test_nothing_is_lost_however_many_holes_two_requests_have(kept: set[int], turned: bool) -> None:
     holes = kept if turned else set(range(128)) - kept
@@ -193,17 +194,17 @@ def test_a_protocol_without_53_searches_the_end(protocol: str) -> None:
 
 @pytest.mark.parametrize("protocol", ["facon", "mseries"])
 @pytest.mark.parametrize("fault", ["duplicate=0.3", "duplicate=0.1 flip=0.05", "late=0.1", "noise=0.2"])
-def test_a_search_takes_no_other_answer_for_its_own(protocol: str, fault: str) -> None:
+@pytest.mark.parametrize("seed", seeds(2, 8))
+def test_a_search_takes_no_other_answer_for_its_own(protocol: str, fault: str, seed: int) -> None:
     """Answers that come twice over a paced line would shift all that follow, refusals too."""
     holes = {3, 11, 12, *range(40, 52)}
-    for seed in range(8):
-        made = with_holes(holes, protocol=protocol, baud=9600, faults=fault.split(), seed=seed)
-        for at in set(range(64)) - holes:
-            made.device.write_words("R", at, [1000 + at * 7])
-        reading = read_elements(made.plc, [*registers(range(64)), *registers([8072, 8073])])
-        assert {element.address for element in reading.errors} == {*holes, 8072, 8073}, seed
-        for element, value in reading.values.items():
-            assert value == 1000 + element.address * 7, (seed, element)
+    made = with_holes(holes, protocol=protocol, baud=9600, faults=fault.split(), seed=seed)
+    for at in set(range(64)) - holes:
+        made.device.write_words("R", at, [1000 + at * 7])
+    reading = read_elements(made.plc, [*registers(range(64)), *registers([8072, 8073])])
+    assert {element.address for element in reading.errors} == {*holes, 8072, 8073}
+    for element, value in reading.values.items():
+        assert value == 1000 + element.address * 7, element
 
 
 def test_a_refusal_has_nothing_read_again(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -15,6 +15,7 @@ from fatektool.jobs.fleet.rounds import Fleet, Task, Turn
 from fatektool.transport.base import Transport
 from fatektool.transport.limit import Limit, LimitedTransport
 from tests.guard import GUARD_S
+from tests.night import examples
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -30,7 +31,7 @@ def run(tasks: list[Task[str]], jobs: int = 4, deadline_s: float = GUARD_S) -> l
         return [turn.task.name for turn in fleet.ended() if turn is not None]
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=examples(50), deadline=None)
 @given(st.lists(st.sampled_from("abcd"), max_size=12), st.integers(1, 5))
 def test_one_at_a_time_on_a_line_and_so_many_lines_at_once(lines: list[str], jobs: int) -> None:
     busy: set[str] = set()

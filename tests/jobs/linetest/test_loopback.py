@@ -15,6 +15,7 @@ from fatektool.jobs.linetest.loopback.data import Pattern
 from fatektool.jobs.linetest.loopback.result import ERRORS, LoopbackPlan, LoopbackResult
 from fatektool.jobs.linetest.loopback.run import run_loopback
 from tests.exchange.peer import RUNNING, STATUS, Rules, Script, frame, linked, soon
+from tests.night import examples
 from tests.plcs import simulated
 
 A = frame("4Eabcd")
@@ -191,7 +192,7 @@ def test_sizes_have_a_range(sizes: tuple[int, ...]) -> None:
 FAULTS = ("drop", "flip", "truncate", "noise", "duplicate", "late", "slow", "wrong-station", "echo", "twins")
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(
     st.lists(
         st.tuples(st.sampled_from(FAULTS), st.sampled_from([0.05, 0.3])), max_size=3, unique_by=lambda f: f[0]

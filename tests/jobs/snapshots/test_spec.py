@@ -15,6 +15,7 @@ from fatektool.protocol.elements import Element
 from fatektool.protocol.values import ValueType
 from fatektool.simulator.models import MODELS
 from tests.cli.running import check
+from tests.night import night
 from tests.plant import error_of, small
 
 if TYPE_CHECKING:
@@ -155,7 +156,7 @@ def test_on_the_command_line(plant: Plant, place: Path) -> None:
         error_of(plant.cli("snapshot", *words), 2)
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", ["fbe-28mc", "fbs-20mc", *map(night, sorted(MODELS))])
 def test_all_of_every_model(model: str) -> None:
     made = small(model=model)
     before = made.plc.link.counters.exchanges

@@ -13,6 +13,7 @@ from fatektool.errors import FrameError, UsageError
 from fatektool.protocol.modbus.ascii import ASCII
 from fatektool.protocol.modbus.rtu import RTU
 from fatektool.protocol.modbus.tcp import TCP
+from tests.night import examples
 from tests.protocol.decoding import decoded, drained, frames, one_frame
 from tests.protocol.modbus.vectors import (
     EXCEPTION,
@@ -195,7 +196,7 @@ def streams(spoken: Spoken) -> st.SearchStrategy[bytes]:
 
 @each_framing
 @given(st.data())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 def test_any_chunks_give_the_same_frames(spoken: Spoken, data: st.DataObject) -> None:
     stream = data.draw(streams(spoken))
     whole = frames([stream], spoken.codec)
@@ -205,7 +206,7 @@ def test_any_chunks_give_the_same_frames(spoken: Spoken, data: st.DataObject) ->
 
 @each_framing
 @given(st.data())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 def test_every_byte_is_accounted_for(spoken: Spoken, data: st.DataObject) -> None:
     stream = data.draw(streams(spoken))
     decoder = spoken.codec.decoder()
@@ -221,7 +222,7 @@ def test_every_byte_is_accounted_for(spoken: Spoken, data: st.DataObject) -> Non
 
 @each_framing
 @given(st.data())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 def test_a_good_frame_behind_anything_that_ended_is_found(spoken: Spoken, data: st.DataObject) -> None:
     """Behind what is let go of when its time is over."""
     stream, raw = data.draw(streams(spoken)), data.draw(st.sampled_from(spoken.raws))
@@ -237,7 +238,7 @@ def test_a_good_frame_behind_anything_that_ended_is_found(spoken: Spoken, data: 
 
 @each_framing
 @given(st.lists(st.binary(max_size=400), max_size=3))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 def test_any_bytes_raise_frame_error_or_nothing(spoken: Spoken, chunks: list[bytes]) -> None:
     for item in decoded(*chunks, codec=spoken.codec):
         assert item.raw
@@ -245,7 +246,7 @@ def test_any_bytes_raise_frame_error_or_nothing(spoken: Spoken, chunks: list[byt
 
 @pytest.mark.parametrize("spoken", SPOKEN[:2], ids=lambda spoken: spoken.codec.name)
 @given(st.data())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 def test_one_changed_byte_never_passes_unseen(spoken: Spoken, data: st.DataObject) -> None:
     raw = data.draw(st.sampled_from(spoken.raws))
     at = data.draw(st.integers(0, len(raw) - 1))

@@ -1,0 +1,31 @@
+"""How much is tried of what could go on for ever: a share of it in each run, all of it at night.
+
+At night is ``pytest -m slow``, which looks for new cases; see ``conftest``.
+"""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import pytest
+
+AT_NIGHT = "FATEKTOOL_TESTS_AT_NIGHT"
+"""Set in the environment before a test is imported, where all of it is to be tried."""
+_SHARE = 4
+_LEAST = 10
+
+
+def examples(most: int) -> int:
+    """How many cases of a property are drawn: a quarter of them, but ten at least; all at night."""
+    return most if os.environ.get(AT_NIGHT) else max(min(_LEAST, most), most // _SHARE)
+
+
+def night(*values: Any, name: str | None = None) -> Any:
+    """A row that is for the night."""
+    return pytest.param(*values, marks=pytest.mark.slow, id=name)
+
+
+def seeds(by_day: int, at_night: int) -> list[Any]:
+    """Seeds from 0: the first few for each run, the rest for the night."""
+    return [*range(by_day), *(night(seed) for seed in range(by_day, at_night))]
