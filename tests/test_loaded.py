@@ -133,6 +133,7 @@ FRAME = {
     "fatektool.errors",
     "fatektool.cli",
     "fatektool.cli.app",
+    "fatektool.cli.shared.lazy_group",
     "fatektool.cli.shared.output",
     "fatektool.cli.shared.streams",
 }
@@ -151,6 +152,15 @@ def test_help_loads_no_command() -> None:
     assert ours(found) == FRAME
     assert not found & (NEVER | {"json", "pathlib", "hashlib", "socket", "difflib"})
     assert len(found) <= 28
+
+
+@pytest.mark.parametrize("group", ["fleet", "history", "inventory", "link", "link table", "snapshot"])
+def test_the_help_of_a_group_loads_no_command(group: str) -> None:
+    found = beyond_click(*group.split(), "--help")
+    home = {"link table": "line.link.table", "link": "line.link", "snapshot": "elements.snapshot"}
+    module = f"fatektool.cli.{home.get(group, f'many.{group}')}"
+    others = {"fatektool.cli.line.link.group"} if group == "link table" else set()
+    assert ours(found) - others == FRAME | {f"{module}.group"}
 
 
 # --- over TCP ---------------------------------------------------------------------------------------------

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from fatektool import connection
-from fatektool.cli.many.fleet import jobs as fleet_jobs
+from fatektool.cli.many.fleet import status as fleet_status
 from fatektool.jobs.status import read_status
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.listen.pty import PTY_SUPPORTED
@@ -189,7 +189,7 @@ def test_who_waits_for_the_line_gets_it_between_two_plcs(cli: Cli, monkeypatch: 
             order.append("plc")
             return read_status(plc, brief=brief)
 
-        monkeypatch.setattr(fleet_jobs, "read_status", status)
+        monkeypatch.setattr(fleet_status, "read_status", status)
         inventory(*[gateway.target] * 3)
         assert cli("fleet", "status", "--brief").code == 0
         other.join()

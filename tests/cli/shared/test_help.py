@@ -8,10 +8,13 @@ from typing import TYPE_CHECKING
 import click
 import pytest
 
-from fatektool.cli.app import ENTRIES, JOBS, app
+from fatektool.cli.app import JOBS, app
+from fatektool.cli.shared.lazy_group import LazyGroup
 from fatektool.version import __version__
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from tests.cli.running import Cli
 
 
@@ -24,7 +27,7 @@ def test_the_help_groups_the_commands_by_job(cli: Cli) -> None:
     assert (done.code, done.err) == (0, "")
     places = [done.out.index(f"{job}:\n") for job in JOBS]
     assert places == sorted(places)
-    for name, entry in ENTRIES.items():
+    for name, entry in app.subcommands.items():
         assert re.search(rf"^  {name} +{re.escape(entry.help[:40])}", done.out, re.MULTILINE), name
 
 
@@ -32,16 +35,16 @@ def test_no_command_is_a_question_for_help(cli: Cli) -> None:
     assert cli() == (2, cli("--help").out, "")
 
 
-@pytest.mark.parametrize("name", ENTRIES)
+@pytest.mark.parametrize("name", app.subcommands)
 def test_every_command_has_help_with_an_example(cli: Cli, name: str) -> None:
     for option in ("--help", "-h"):
         done = cli(name, option)
         assert (done.code, done.err) == (0, "")
         assert re.search(rf"Examples?:.*fatektool {name}", " ".join(done.out.split())), done.out
-        assert ENTRIES[name].help
+        assert app.subcommands[name].help
 
 
-@pytest.mark.parametrize("name", ENTRIES)
+@pytest.mark.parametrize("name", app.subcommands)
 def test_the_examples_are_good_command_lines(cli: Cli, name: str) -> None:
     example = " ".join(cli(name, "--help").out.split()).partition("Example")[2]
     found = re.findall(r"fatektool ([^;|&)]+)", example)
@@ -62,6 +65,52 @@ def test_a_near_miss(cli: Cli, wrong: str, near: str) -> None:
     done = cli(wrong)
     assert done.code == 2
     assert f"no such command '{wrong}'; did you mean {near}" in done.err
+
+
+@pytest.mark.parametrize(
+    ("words", "near"),
+    [
+        ("fleet verfy", "verify"),
+        ("history exprt", "export"),
+        ("inventory lst", "list"),
+        ("link tabel", "table"),
+        ("link table wirte", "write"),
+    ],
+)
+def test_a_near_miss_in_a_group(cli: Cli, words: str, near: str) -> None:
+    done = cli(*words.split())
+    *group, wrong = words.split()
+    told = f"no such command '{wrong}'; did you mean {near}?; see 'fatektool {' '.join(group)} --help'"
+    assert (done.code, done.err) == (2, f"fatektool: {told}\n")
+
+
+def groups(group: LazyGroup, *words: str) -> Iterator[tuple[tuple[str, ...], LazyGroup]]:
+    """The groups that load their commands when they are used, by the words of the command line."""
+    yield words, group
+    context = click.Context(group)
+    for name in group.subcommands:
+        found = group.get_command(context, name)
+        if isinstance(found, LazyGroup):
+            yield from groups(found, *words, name)
+
+
+GROUPS = dict(groups(app))
+
+
+def test_there_are_groups_in_groups() -> None:
+    assert {"fleet", "history", "inventory", "link", "link table", "snapshot"} < set(map(" ".join, GROUPS))
+
+
+@pytest.mark.parametrize("words", GROUPS)
+def test_a_group_has_the_commands_of_its_help(cli: Cli, words: tuple[str, ...]) -> None:
+    done = cli(*words, "--help")
+    assert done.code == 0
+    for name, each in GROUPS[words].subcommands.items():
+        assert f"  {name} " in done.out
+        assert each.help in " ".join(done.out.split())
+        command = GROUPS[words].get_command(click.Context(GROUPS[words]), name)
+        assert command is not None
+        assert command.name == name
 
 
 def test_a_far_miss(cli: Cli) -> None:

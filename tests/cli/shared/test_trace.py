@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 import pytest
 
-from fatektool.cli.app import ENTRIES, app
+from fatektool.cli.app import app
 from fatektool.transport.trace_reader import TraceRecord, read_trace
 from tests.cli.running import process, started
 from tests.cli.shared.test_signals import paced
@@ -69,7 +69,7 @@ def test_whatever_has_a_port_has_a_trace() -> None:
         if "port" in options:
             assert "trace" in options, words
             talking.add(words.split()[0])
-    assert talking == {line.split()[0] for line in TALKING.splitlines()} & set(ENTRIES)
+    assert talking == {line.split()[0] for line in TALKING.splitlines()} & set(app.subcommands)
 
 
 @pytest.mark.parametrize("line", TALKING.splitlines())

@@ -14,7 +14,7 @@ from fatektool.cli.many.documents import FleetRun, fleet_document
 from fatektool.cli.many.fleet.view import View
 from fatektool.cli.many.outcome import Outcome, Result, failure
 from fatektool.cli.shared.inventory_file import complete_names, inventory_option, open_inventory
-from fatektool.cli.shared.options import Seconds, voice_options
+from fatektool.cli.shared.options import Seconds, connection_of, voice_options
 from fatektool.errors import FatektoolError
 from fatektool.files.times import utc
 from fatektool.inventory.select import select
@@ -27,8 +27,10 @@ if TYPE_CHECKING:
 
     from fatektool.cli.many.alarms import Alarms
     from fatektool.cli.shared.output import Voice
+    from fatektool.client import Plc
     from fatektool.inventory.entries import Inventory, PlcEntry
     from fatektool.jobs.fleet.rounds import Turn
+    from fatektool.protocol.commands import Command
 
 F = TypeVar("F", bound="Callable[..., Any]")
 
@@ -179,6 +181,11 @@ def run_fleet(
     ordered = [outcomes[entry.name] for entry in orders.entries]
     run = FleetRun(job, time_, time.monotonic() - began, orders.inventory.file, ordered, interrupted)
     return fleet_document(run), interrupted
+
+
+def opened(entry: PlcEntry, turn: Turn[Result], voice: Voice, *needs: Command) -> Plc:
+    """The PLC, connected within the limit of its turn."""
+    return connection_of(entry).open(voice.of(entry.name), needs=needs, limit=turn.limit, shared=turn.shared)
 
 
 def ended(job: str, document: dict[str, Any], voice: Voice, alarms: Alarms, *, interrupted: bool) -> int:

@@ -1,37 +1,33 @@
-"""``snapshot``: a PLC's data to JSON and others; ``snapshot diff``, ``snapshot apply``."""
+"""``snapshot take``: a PLC's data to JSON and other formats."""
 
 from __future__ import annotations
 
 import os
 import re
 from functools import wraps
-from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import click
 
-from fatektool.cli.elements.documents import snapshot_diff_document
 from fatektool.cli.elements.selection import selected, spec_options
-from fatektool.cli.elements.snapshot_apply import apply_command
-from fatektool.cli.elements.values import SELECTION, shown, warn_of
+from fatektool.cli.elements.values import SELECTION, warn_of
 from fatektool.cli.programs.program_files import comments_for, comments_options
 from fatektool.cli.shared.file_path import standard
 from fatektool.cli.shared.modbus_map import modbus_map_option
-from fatektool.cli.shared.options import PATH, Connection, connection_options_but_format, voice_options
+from fatektool.cli.shared.options import PATH, Connection, connection_options_but_format
 from fatektool.cli.shared.places import require_folder_for, require_free
 from fatektool.cli.shared.report import report_option, write_snapshot_report
 from fatektool.errors import PlcError, UsageError
 from fatektool.files.atomic import write_whole
 from fatektool.jobs.snapshots.comments import snapshot_with_comments
-from fatektool.jobs.snapshots.compare import Change, compare_snapshots
 from fatektool.jobs.snapshots.formats import FORMATS, SUFFIXES, as_json, as_ndjson, as_prometheus
-from fatektool.jobs.snapshots.snapshot import load_snapshot, take_all, take_snapshot
+from fatektool.jobs.snapshots.snapshot import take_all, take_snapshot
 from fatektool.jobs.snapshots.store import Keep, append_line, encoded, require_lines, save_dated
 from fatektool.protocol.commands import Command
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
     from fatektool.cli.shared.output import Voice
 
@@ -64,30 +60,7 @@ def either_format(function: F) -> F:
     return with_formats  # type: ignore[return-value]  # click's decorators hand back what they get
 
 
-class SnapshotGroup(click.Group):
-    """``snapshot ELEMENTS`` takes one; ``snapshot diff`` and ``snapshot apply`` are commands."""
-
-    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Put the command's name in front of elements and options."""
-        if not args or (args[0] not in self.commands and args[0] not in {"--help", "-h"}):
-            args = ["take", *args]
-        return super().parse_args(ctx, args)
-
-
-@click.group(
-    "snapshot",
-    cls=SnapshotGroup,
-    epilog="Example: fatektool snapshot R0-R99 D4:f32 -p sim: -o snapshots/ --keep 30d",
-)
-def snapshot_command() -> None:
-    """Read a PLC's data to JSON, compare snapshots, put one back.
-
-    'fatektool snapshot ELEMENTS…' is short for 'fatektool snapshot take ELEMENTS…': see 'fatektool snapshot
-    take --help' for --spec, --all, --output, --append, --format and --keep.
-    """
-
-
-@snapshot_command.command(
+@click.command(
     "take",
     epilog="Example: fatektool snapshot --spec press.toml -p /dev/ttyUSB0 --append press.ndjson --keep 90d",
     help=f"Read data from the PLC, in the fewest bytes.\n\n{SELECTION}",
@@ -244,37 +217,3 @@ def _folder(output: str | None) -> Path | None:
     if output is None or not (output.endswith(("/", "\\")) or Path(output).is_dir()):
         return None
     return Path(output)
-
-
-@snapshot_command.command(
-    "diff", epilog="Example: fatektool snapshot diff monday.json tuesday.json --ignore 'RT*'"
-)
-@click.argument("a", type=PATH)
-@click.argument("b", type=PATH)
-@click.option("--ignore", multiple=True, metavar="GLOB", help="Keys that do not count; repeat for more.")
-@click.option("--tolerance", type=click.FloatRange(0), default=0.0, help="How far apart two numbers may be.")
-@voice_options
-def diff_command(a: Path, b: Path, voice: Voice, *, ignore: tuple[str, ...], tolerance: float) -> int:
-    """Compare the snapshots A and B: exit 0 if nothing differs, 1 if something does. Needs no PLC."""
-    if isnan(tolerance):
-        raise UsageError("--tolerance nan: expected a number from 0")
-    one, other = load_snapshot(a, voice.warn), load_snapshot(b, voice.warn)
-    changes = compare_snapshots(one, other, ignore=ignore, tolerance=tolerance)
-    document = snapshot_diff_document((a, one), (b, other), changes)
-    voice.show(document, _change_lines(changes))
-    return 1 if changes else 0
-
-
-def _change_lines(changes: list[Change]) -> Iterator[str]:
-    if not changes:
-        yield "same"
-    width = max((len(change.key) for change in changes), default=0)
-    for change in changes:
-        one, other = (
-            "(not there)" if change.absent == side else shown(value, "- (no value)")
-            for side, value in (("a", change.a), ("b", change.b))
-        )
-        yield f"{change.key:<{width}}  {one} -> {other}"
-
-
-snapshot_command.add_command(apply_command)

@@ -1,4 +1,4 @@
-"""The output of the ``history`` commands, as documents and as lines."""
+"""The JSON documents of ``history``."""
 
 from __future__ import annotations
 
@@ -6,14 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 from fatektool.cli.programs.documents import backup_summary, networks_document
 from fatektool.files.times import utc
-from fatektool.history.messages import count
-from fatektool.history.revisions import SHORT
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
     from pathlib import Path
 
-    from fatektool.history.checking import Damage, HistoryCheck
+    from fatektool.history.checking import HistoryCheck
     from fatektool.history.history import LogEntry, RecordResult, Stored
     from fatektool.history.push import Pushed
     from fatektool.ladder.differences import NetworkChange
@@ -42,17 +40,6 @@ def record_document(
     }
 
 
-def record_rows(found: RecordResult, folder: Path, pushed: Pushed | None) -> Iterator[tuple[str, object]]:
-    """The result of a recording."""
-    if found.revision is None:
-        yield "unchanged", f"{found.name}: the newest program in {folder} is the same"
-    else:
-        yield "recorded", found.subject
-        yield "revision", found.revision
-    if pushed is not None:
-        yield "pushed", pushed.remote if pushed.sent else f"{pushed.remote} is up to date"
-
-
 def log_document(found: Sequence[LogEntry], folder: Path, name: str | None, *, more: bool) -> dict[str, Any]:
     """``fatektool.history-log/1``."""
     return {
@@ -72,14 +59,6 @@ def log_document(found: Sequence[LogEntry], folder: Path, name: str | None, *, m
         ],
         "more": more,
     }
-
-
-def log_line(change: LogEntry) -> str:
-    """One change; the PLC's name is put before the subject of a commit that fatektool did not make."""
-    subject = change.commit.subject
-    named = subject if subject.startswith(f"{change.name}: ") else f"{change.name}: {subject}"
-    removed = " (removed)" if change.removed else ""
-    return f"{change.commit.revision[:SHORT]}  {utc(change.commit.time)}  {named}{removed}"
 
 
 def show_document(
@@ -132,24 +111,3 @@ def check_document(found: HistoryCheck, folder: Path) -> dict[str, Any]:
             for fault in found.faults
         ],
     }
-
-
-def check_lines(found: HistoryCheck) -> Iterator[str]:
-    """What was checked, and what is damaged."""
-    commits, programs = count(found.commits, "commit"), count(found.programs, "program")
-    looked = f"{commits}, {programs}, {count(len(found.names), 'PLC')} now"
-    yield (
-        f"damaged: {count(len(found.faults), 'fault')} in {looked}"
-        if found.faults
-        else f"no damage: {looked}"
-    )
-    if found.shallow:
-        yield "a shallow clone: older commits are missing; 'git fetch --unshallow' gets them"
-    for fault in found.faults:
-        yield f"  {_place(fault)}{fault.message}"
-
-
-def _place(fault: Damage) -> str:
-    if fault.revision is None:
-        return ""
-    return f"{fault.name}@{fault.revision[:SHORT]}: " if fault.name else f"{fault.revision[:SHORT]}: "

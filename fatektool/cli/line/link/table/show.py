@@ -1,4 +1,4 @@
-"""``link table``: communication tables shown, checked and saved. ``link table write`` has its own file."""
+"""``link table show``, ``check`` and ``save``."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ import click
 
 from fatektool.cli.line.link.documents import table_document
 from fatektool.cli.line.link.kind import KIND
-from fatektool.cli.line.link.table_view import table_lines
-from fatektool.cli.line.link.table_write import write_command
+from fatektool.cli.line.link.table.view import table_lines
 from fatektool.cli.shared.documents import where
 from fatektool.cli.shared.options import PATH, Connection, connection_options, voice_options
 from fatektool.files.atomic import read_bounded, require_place, write_whole
@@ -41,17 +40,7 @@ def kind_option(function: F) -> F:
     )(function)
 
 
-@click.group("table", epilog="Example: fatektool link table show R5000 --kind md0 -p /dev/ttyUSB0")
-def table_command() -> None:
-    """Communication tables: what the instructions CLINK and M-BUS ask of whom.
-
-    SR is the instruction's operand: the register where its table begins, such as R5000 or D100.
-    """
-
-
-@table_command.command(
-    "show", epilog="Example: fatektool link table show R5000 --kind mbus -p /dev/ttyUSB0 --check"
-)
+@click.command("show", epilog="Example: fatektool link table show R5000 --kind mbus -p /dev/ttyUSB0 --check")
 @click.argument("sr", metavar="SR")
 @kind_option
 @click.option("--check", is_flag=True, help="Exit 1 if something in the table is wrong.")
@@ -70,7 +59,7 @@ def show_command(sr: str, connection: Connection, voice: Voice, *, kind: str, ch
     return int(check and bool(faults))
 
 
-@table_command.command("check", epilog="Example: fatektool link table check press.toml")
+@click.command("check", epilog="Example: fatektool link table check press.toml")
 @click.argument("file", type=PATH)
 @voice_options
 def check_command(file: Path, voice: Voice) -> int:
@@ -84,7 +73,7 @@ def check_command(file: Path, voice: Voice) -> int:
     return 1 if faults else 0
 
 
-@table_command.command(
+@click.command(
     "save", epilog="Example: fatektool link table save R5000 press.toml --kind md0 -p /dev/ttyUSB0"
 )
 @click.argument("sr", metavar="SR")
@@ -109,6 +98,3 @@ def save_command(sr: str, file: Path, connection: Connection, voice: Voice, *, k
     if faults:
         voice.warn(f"the table has {len(faults)} faults: 'fatektool link table check {file}' shows them")
     return 0
-
-
-table_command.add_command(write_command)

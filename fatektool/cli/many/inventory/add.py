@@ -1,4 +1,4 @@
-"""``inventory``: the file with the names and settings of the PLCs."""
+"""``inventory add``: PLCs to the end of the inventory."""
 
 from __future__ import annotations
 
@@ -8,121 +8,24 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from fatektool.cli.shared.inventory_file import inventory_option, inventory_path, open_inventory
+from fatektool.cli.many.inventory.documents import add_document
+from fatektool.cli.shared.inventory_file import inventory_option, inventory_path
 from fatektool.cli.shared.options import PATH, voice_options
 from fatektool.cli.shared.pairs import apart
-from fatektool.errors import DataError, FatektoolError, UsageError
+from fatektool.errors import DataError, UsageError
 from fatektool.files.atomic import read_bounded, write_whole
 from fatektool.inventory.add import with_plc
-from fatektool.inventory.entries import InventoryFault
-from fatektool.inventory.find import FILE_NAME, no_inventory
-from fatektool.inventory.load import MAX_INVENTORY, load_inventory
-from fatektool.inventory.select import select
+from fatektool.inventory.find import FILE_NAME
+from fatektool.inventory.load import MAX_INVENTORY
 from fatektool.protocols import PROTOCOLS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from fatektool.cli.shared.output import Voice
-    from fatektool.inventory.entries import Inventory, PlcEntry
 
 _MAX_SCAN: Final = 4 << 20
 
 
-@click.group("inventory", epilog="Example: fatektool inventory add press -p tcp://192.168.2.3 --tag night")
-def inventory_command() -> None:
-    """Check, list and extend the inventory: the TOML file that names your PLCs.
-
-    All commands take a name of the inventory as a target: 'fatektool status -p NAME'.
-    """
-
-
-@inventory_command.command("check", epilog="Example: fatektool inventory check --inventory fatek.toml")
-@inventory_option
-@voice_options
-def check_command(inventory: Path | None, voice: Voice) -> int:
-    """Print each fault of the inventory with its line: exit 0 if there is none, 1 if there is one."""
-    path = inventory_path(inventory)
-    if path is None:
-        raise no_inventory()
-    found = load_inventory(path)
-    found.faults += _faults_of_files(found)
-    document = {
-        "schema": "fatektool.inventory-check/1",
-        "file": str(path),
-        "plcs": len(found.plcs),
-        "faults": [{"line": fault.line, "message": fault.message} for fault in found.faults],
-    }
-    lines = [f"{path}: {fault}" for fault in found.faults]
-    voice.show(document, lines or [f"{path}: {len(found.plcs)} PLCs, no faults"])
-    return 1 if found.faults else 0
-
-
-def _faults_of_files(found: Inventory) -> Iterator[InventoryFault]:
-    """The faults of the files that the inventory names; each file is checked once."""
-    from fatektool.jobs.snapshots.spec import load_spec
-    from fatektool.project.program_file import load_program
-
-    seen: set[Path] = set()
-    for entry in found.plcs.values():
-        for key, path in (("spec", entry.spec), ("reference", entry.reference), ("project", entry.project)):
-            if path is None or path in seen:
-                continue
-            seen.add(path)
-            try:
-                if key == "spec":
-                    load_spec(path)
-                else:
-                    load_program(path)
-            except FatektoolError as error:
-                yield InventoryFault(None, f"plc.{entry.name}: {key}: {error.message}")
-
-
-@inventory_command.command("list", epilog="Example: fatektool inventory list --select night")
-@click.option("--select", "words", multiple=True, metavar="NAME|TAG|GLOB", help="Only these PLCs.")
-@inventory_option
-@voice_options
-def list_command(inventory: Path | None, words: tuple[str, ...], voice: Voice) -> None:
-    """List the PLCs of the inventory with their settings."""
-    found = open_inventory(inventory)
-    entries = select(found, words)
-    document = {
-        "schema": "fatektool.inventory/1",
-        "file": str(found.file),
-        "plcs": [_entry_document(entry) for entry in entries],
-    }
-    voice.show(document, _rows(entries))
-
-
-def _entry_document(entry: PlcEntry) -> dict[str, Any]:
-    return {
-        "name": entry.name,
-        "target": entry.target,
-        "station": entry.station,
-        "protocol": entry.protocol,
-        "baud": entry.baud,
-        "format": entry.format,
-        "timeout_s": entry.timeout_s,
-        "retries": entry.retries,
-        "lock_wait_s": entry.lock_wait_s,
-        "tags": list(entry.tags),
-        "spec": None if entry.spec is None else str(entry.spec),
-        "reference": None if entry.reference is None else str(entry.reference),
-        "project": None if entry.project is None else str(entry.project),
-        "expect": entry.expect,
-        "read_only": entry.read_only,
-    }
-
-
-def _rows(entries: list[PlcEntry]) -> Iterator[str]:
-    rows = [(entry.name, entry.target, str(entry.station), entry.protocol) for entry in entries]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    for row, entry in zip(rows, entries, strict=True):
-        cells = [f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)]
-        yield "  ".join([*cells, ", ".join(entry.tags)]).rstrip()
-
-
-@inventory_command.command(
+@click.command(
     "add",
     epilog="Example: fatektool scan -p /dev/ttyUSB0 --json | fatektool inventory add hall1 --from -",
 )
@@ -190,8 +93,7 @@ def add_command(
     if added:
         mode = path.stat().st_mode & 0o777 if path.exists() else 0o644
         write_whole(path, data, overwrite=True, mode=mode)
-    document = {"schema": "fatektool.inventory-add/1", "file": str(path), "added": added}
-    voice.show(document, [f"added {each} to {path}" for each in added])
+    voice.show(add_document(path, added), [f"added {each} to {path}" for each in added])
 
 
 def _known(data: bytes, path: Path) -> set[tuple[str, int]]:

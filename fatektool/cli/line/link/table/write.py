@@ -10,7 +10,7 @@ import click
 
 from fatektool.cli.elements.values import warn_of
 from fatektool.cli.line.link.documents import fault_documents, host_document
-from fatektool.cli.line.link.table_view import table_lines
+from fatektool.cli.line.link.table.view import table_lines
 from fatektool.cli.shared.addressee import Pace, look, time_row
 from fatektool.cli.shared.documents import where
 from fatektool.cli.shared.options import PATH, Connection, connection_options, yes_option

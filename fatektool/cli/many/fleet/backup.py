@@ -1,0 +1,149 @@
+"""``fleet backup``: the programs of all PLCs, into files and a history."""
+
+from __future__ import annotations
+
+from contextlib import nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fatektool.cli.many.alarms import Alarms, alarm_options
+from fatektool.cli.many.fleet.run import Orders, ended, fleet_options, news_option, opened, run_fleet
+from fatektool.cli.many.outcome import Result
+from fatektool.cli.programs.documents import saved_document
+from fatektool.cli.shared.image_words import warn_of_image
+from fatektool.cli.shared.options import PATH
+from fatektool.cli.shared.places import require_folder_for
+from fatektool.errors import FatektoolError, UsageError
+from fatektool.jobs.programs.backup import read_backup
+from fatektool.jobs.programs.safekeeping import replace_backup, require_ladder
+from fatektool.protocol.commands import Command
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fatektool.cli.shared.output import Voice
+    from fatektool.history.history import History
+    from fatektool.inventory.entries import PlcEntry
+    from fatektool.jobs.fleet.rounds import Turn
+    from fatektool.program.archive import Backup
+
+
+@click.command("backup", epilog="Example: fatektool fleet backup --dir backups --on-failure send-alarm")
+@click.option("--dir", "folder", type=PATH, help="Write DIR/NAME.json for each, in place of the one before.")
+@click.option(
+    "--history",
+    type=PATH,
+    metavar="DIR",
+    envvar="FATEKTOOL_HISTORY",
+    help="Keep what changed in a git repository.  [env: FATEKTOOL_HISTORY]",
+)
+@click.option("--push", "remote", metavar="REMOTE", help="Then push the history: a folder, ssh://, https://.")
+@click.option("--single-pass", is_flag=True, help="Read once instead of twice; nothing is compared.")
+@click.option("--any-header", is_flag=True, help="Keep images whose header does not hold, marked as such.")
+@alarm_options(changes=True)
+@news_option
+@fleet_options
+def backup_command(
+    orders: Orders,
+    alarms: Alarms,
+    voice: Voice,
+    *,
+    folder: Path | None,
+    history: Path | None,
+    remote: str | None,
+    single_pass: bool,
+    any_header: bool,
+) -> int:
+    """Back up the PLCs' programs.
+
+    Each file is written whole or not at all: a backup that fails leaves the one before as it is. An image
+    that has lost its program, one byte all over, is a failure. 'fatektool history' shows what --history
+    keeps. A push that fails is warned of, and exit 1.
+    """
+    if folder is None and history is None:
+        raise UsageError("no place for the backups", hint="give --dir DIR or --history DIR, or both")
+    if remote is not None and history is None:
+        raise UsageError("--push goes with --history DIR")
+    if folder is not None:
+        require_folder_for(folder, voice)
+    with nullcontext() if history is None else _opened(history, voice) as kept:
+        work = _work(voice, folder, kept, single_pass=single_pass, any_header=any_header)
+        document, interrupted = run_fleet("backup", orders, alarms, voice, work)
+    if history is not None and remote is not None and not interrupted:
+        document["push"] = _push(history, remote, voice)
+    code = ended("backup", document, voice, alarms, interrupted=interrupted)
+    return code or int("error" in document.get("push", {}))
+
+
+def _opened(folder: Path, voice: Voice) -> History:
+    from fatektool.history.history import History
+
+    return History(folder, waiting=voice.say)
+
+
+def _push(history: Path, remote: str, voice: Voice) -> dict[str, Any]:
+    """Push, and tell what became of it: the backups are kept here in any case."""
+    from fatektool.history.push import push
+
+    if not history.exists():  # no PLC has given its program yet
+        return {"remote": remote, "revision": None, "sent": False}
+    try:
+        pushed = push(history, remote)
+    except FatektoolError as error:
+        voice.warn(f"the history is not pushed: {error}")
+        return {"remote": remote, "revision": None, "sent": False, "error": error.message}
+    return {"remote": pushed.remote, "revision": pushed.revision, "sent": pushed.sent}
+
+
+def _work(
+    voice: Voice,
+    folder: Path | None,
+    history: History | None,
+    *,
+    single_pass: bool,
+    any_header: bool,
+) -> Callable[[PlcEntry, Turn[Result]], Result]:
+    """``fleet backup``.
+
+    Args:
+        voice: is told of what is odd.
+        folder: where NAME.json is written; None for nowhere.
+        history: keeps what changed, open as long as the round lasts; None for none.
+        single_pass: as for ``backup``.
+        any_header: as for ``backup``.
+    """
+    kept_in = None if history is None else history.folder
+
+    def work(entry: PlcEntry, turn: Turn[Result]) -> Result:
+        own = voice.of(entry.name)
+        with opened(entry, turn, voice, Command.READ_PAGE) as plc:
+            found = read_backup(plc, single_pass=single_pass, any_header=any_header, progress=turn.progress)
+        program = found.backup.program
+        require_ladder(program)
+        warn_of_image(program, own)
+        turn.progress("saving", 0, 0)
+        changed = None
+        path = None if folder is None else folder / f"{entry.name}.json"
+        if path is not None:
+            replaced = replace_backup(found.backup, path)
+            changed = replaced.changed
+            if replaced.damaged is not None:
+                voice.warn(f"{replaced.damaged}: it is replaced")
+        if history is not None:
+            changed = _record(history, entry.name, found.backup, own)
+        document = saved_document(found, path or kept_in or Path())
+        said = {None: "first backup", True: "CHANGED", False: "unchanged"}[changed]
+        words = f"{said}, {program.header.text()}, {program.ladder_words} words"
+        return Result(0, document, words, path or kept_in, changed)
+
+    return work
+
+
+def _record(history: History, name: str, backup: Backup, voice: Voice) -> bool | None:
+    """Keep a backup in the history; whether it is another than the one there, None for the first."""
+    found = history.record(name, backup)
+    for warning in found.warnings:
+        voice.warn(warning)
+    return None if found.changes is None else found.revision is not None

@@ -1,0 +1,54 @@
+"""``fleet status``: how the PLCs are."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from fatektool.cli.many.alarms import Alarms, alarm_options
+from fatektool.cli.many.fleet.run import Orders, ended, fleet_options, news_option, opened, run_fleet
+from fatektool.cli.many.outcome import Result
+from fatektool.cli.plc.documents import status_document
+from fatektool.jobs.status import read_status
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fatektool.cli.shared.output import Voice
+    from fatektool.inventory.entries import PlcEntry
+    from fatektool.jobs.fleet.rounds import Turn
+    from fatektool.protocol.status import StatusFlags
+
+
+@click.command("status", epilog="Example: fatektool fleet status --select hall-1")
+@click.option("--brief", is_flag=True, help="The brief status (40) alone.")
+@alarm_options(changes=False)
+@news_option
+@fleet_options
+def status_command(orders: Orders, alarms: Alarms, voice: Voice, *, brief: bool) -> int:
+    """Show how the PLCs are."""
+    document, interrupted = run_fleet("status", orders, alarms, voice, _work(voice, brief=brief))
+    return ended("status", document, voice, alarms, interrupted=interrupted)
+
+
+def _work(voice: Voice, *, brief: bool) -> Callable[[PlcEntry, Turn[Result]], Result]:
+    """``fleet status``."""
+
+    def work(entry: PlcEntry, turn: Turn[Result]) -> Result:
+        with opened(entry, turn, voice) as plc:
+            report = read_status(plc, brief=brief)
+        return Result(0, status_document(report), flag_words(report.flags), flags=report.flags)
+
+    return work
+
+
+def flag_words(flags: StatusFlags) -> str:
+    """RUN or STOP, and what is not as it should be."""
+    odd = {
+        "battery LOW": flags.battery_low,
+        "ladder checksum ERROR": flags.ladder_checksum_error,
+        "watchdog TIMED OUT": flags.watchdog_timeout,
+        "emergency stop ACTIVE": flags.emergency_stop,
+    }
+    return ", ".join(["RUN" if flags.running else "STOP", *(word for word, on in odd.items() if on)])

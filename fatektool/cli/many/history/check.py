@@ -1,0 +1,55 @@
+"""``history check``: every object and every backup of the history."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from fatektool.cli.many.history.documents import (
+    check_document,
+)
+from fatektool.cli.many.history.options import history_option
+from fatektool.cli.shared.options import voice_options
+from fatektool.history.checking import check
+from fatektool.history.messages import count
+from fatektool.history.revisions import SHORT
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from fatektool.cli.shared.output import Voice
+    from fatektool.history.checking import Damage, HistoryCheck
+
+
+@click.command("check", epilog="Example: fatektool history check --history plc-history")
+@history_option
+@voice_options
+def check_command(folder: Path, voice: Voice) -> int:
+    """Check every object and every backup of the history: exit 0 if none is damaged, 1 if one is."""
+    with voice.progress("commits") as bar:
+        found = check(folder, bar.update)
+    voice.show(check_document(found, folder), _lines(found))
+    return 1 if found.faults else 0
+
+
+def _lines(found: HistoryCheck) -> Iterator[str]:
+    """What was checked, and what is damaged."""
+    commits, programs = count(found.commits, "commit"), count(found.programs, "program")
+    looked = f"{commits}, {programs}, {count(len(found.names), 'PLC')} now"
+    yield (
+        f"damaged: {count(len(found.faults), 'fault')} in {looked}"
+        if found.faults
+        else f"no damage: {looked}"
+    )
+    if found.shallow:
+        yield "a shallow clone: older commits are missing; 'git fetch --unshallow' gets them"
+    for fault in found.faults:
+        yield f"  {_place(fault)}{fault.message}"
+
+
+def _place(fault: Damage) -> str:
+    if fault.revision is None:
+        return ""
+    return f"{fault.name}@{fault.revision[:SHORT]}: " if fault.name else f"{fault.revision[:SHORT]}: "

@@ -1,0 +1,52 @@
+"""``history export``: a backup out of the history."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from fatektool.cli.many.history.documents import (
+    export_document,
+)
+from fatektool.cli.many.history.options import history_option, name_and_revision
+from fatektool.cli.shared.file_path import is_standard
+from fatektool.cli.shared.options import PATH, voice_options
+from fatektool.cli.shared.output import table
+from fatektool.cli.shared.pairs import together
+from fatektool.cli.shared.streams import print_bytes
+from fatektool.files.atomic import require_place
+from fatektool.files.times import utc
+from fatektool.history.history import History
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from fatektool.cli.shared.output import Voice
+
+
+@click.command(
+    "export", epilog="Example: fatektool history export press-3@~1 before.json --history plc-history"
+)
+@click.argument("which", metavar="NAME[@REV]")
+@click.argument("file", type=PATH)
+@click.option("--force", is_flag=True, help="Replace FILE if it exists.")
+@history_option
+@voice_options
+def export_command(which: str, file: Path, folder: Path, voice: Voice, *, force: bool) -> None:
+    """Write a backup to FILE for 'restore': the newest of a PLC, or a revision's. - is standard output."""
+    name, revision = name_and_revision(which)
+    history = History(folder)
+    together("force", holds=not is_standard(file), needs="a file")
+    if is_standard(file):
+        print_bytes(history.show(name, revision).data)
+        return
+    require_place(file, overwrite=force)
+    found = history.export(name, revision, file, overwrite=force)
+    rows = [
+        ("saved", file),
+        ("revision", f"{found.label}, recorded {utc(found.commit.time)}"),
+        ("read", found.backup.created),
+        ("sha256", found.backup.program.sha256),
+    ]
+    voice.show(export_document(found, folder, file), table(rows))

@@ -1,0 +1,49 @@
+"""``--history DIR``, and NAME@REV."""
+
+from __future__ import annotations
+
+from functools import wraps
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from fatektool.cli.shared.options import PATH
+from fatektool.errors import UsageError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+F = TypeVar("F", bound="Callable[..., Any]")
+
+
+def history_option(function: F) -> F:
+    """``--history DIR``; the command gets ``history``."""
+
+    @click.option(
+        "--history",
+        "folder",
+        type=PATH,
+        metavar="DIR",
+        envvar="FATEKTOOL_HISTORY",
+        help="The git repository.  [env: FATEKTOOL_HISTORY]",
+    )
+    @wraps(function)
+    def with_history(*args: Any, folder: Path | None, **rest: Any) -> Any:
+        if folder is None:
+            raise UsageError("no history is given", hint="give --history DIR or set FATEKTOOL_HISTORY")
+        return function(*args, folder=folder, **rest)
+
+    return with_history  # type: ignore[return-value]  # click's decorators hand back what they get
+
+
+def name_and_revision(which: str) -> tuple[str, str]:
+    """NAME and REV of ``NAME[@REV]``; without REV the newest.
+
+    Raises:
+        UsageError: there is an @ and no revision behind it.
+    """
+    name, at, revision = which.partition("@")
+    if at and not revision:
+        raise UsageError(f"{which}: expected a revision after the @, such as {name}@~1 or {name}@2026-11-22")
+    return name, revision or "HEAD"

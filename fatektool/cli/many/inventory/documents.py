@@ -1,0 +1,55 @@
+"""The JSON documents of ``inventory``."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+    from fatektool.inventory.entries import Inventory, PlcEntry
+
+
+def check_document(path: Path, found: Inventory) -> dict[str, Any]:
+    """``fatektool.inventory-check/1``."""
+    return {
+        "schema": "fatektool.inventory-check/1",
+        "file": str(path),
+        "plcs": len(found.plcs),
+        "faults": [{"line": fault.line, "message": fault.message} for fault in found.faults],
+    }
+
+
+def inventory_document(found: Inventory, entries: Iterable[PlcEntry]) -> dict[str, Any]:
+    """``fatektool.inventory/1`` of some of its PLCs."""
+    return {
+        "schema": "fatektool.inventory/1",
+        "file": str(found.file),
+        "plcs": [_entry_document(entry) for entry in entries],
+    }
+
+
+def add_document(path: Path, added: Iterable[str]) -> dict[str, Any]:
+    """``fatektool.inventory-add/1``: the names that were added."""
+    return {"schema": "fatektool.inventory-add/1", "file": str(path), "added": list(added)}
+
+
+def _entry_document(entry: PlcEntry) -> dict[str, Any]:
+    return {
+        "name": entry.name,
+        "target": entry.target,
+        "station": entry.station,
+        "protocol": entry.protocol,
+        "baud": entry.baud,
+        "format": entry.format,
+        "timeout_s": entry.timeout_s,
+        "retries": entry.retries,
+        "lock_wait_s": entry.lock_wait_s,
+        "tags": list(entry.tags),
+        "spec": None if entry.spec is None else str(entry.spec),
+        "reference": None if entry.reference is None else str(entry.reference),
+        "project": None if entry.project is None else str(entry.project),
+        "expect": entry.expect,
+        "read_only": entry.read_only,
+    }

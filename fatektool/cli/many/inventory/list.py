@@ -1,0 +1,39 @@
+"""``inventory list``: the PLCs and their settings."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from fatektool.cli.many.inventory.documents import inventory_document
+from fatektool.cli.shared.inventory_file import inventory_option, open_inventory
+from fatektool.cli.shared.options import voice_options
+from fatektool.inventory.select import select
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from fatektool.cli.shared.output import Voice
+    from fatektool.inventory.entries import PlcEntry
+
+
+@click.command("list", epilog="Example: fatektool inventory list --select night")
+@click.option("--select", "words", multiple=True, metavar="NAME|TAG|GLOB", help="Only these PLCs.")
+@inventory_option
+@voice_options
+def list_command(inventory: Path | None, words: tuple[str, ...], voice: Voice) -> None:
+    """List the PLCs of the inventory with their settings."""
+    found = open_inventory(inventory)
+    entries = select(found, words)
+    document = inventory_document(found, entries)
+    voice.show(document, _rows(entries))
+
+
+def _rows(entries: list[PlcEntry]) -> Iterator[str]:
+    rows = [(entry.name, entry.target, str(entry.station), entry.protocol) for entry in entries]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row, entry in zip(rows, entries, strict=True):
+        cells = [f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)]
+        yield "  ".join([*cells, ", ".join(entry.tags)]).rstrip()

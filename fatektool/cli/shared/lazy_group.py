@@ -1,0 +1,75 @@
+"""A group of commands that are loaded when they are used: asking for one never pays for the others."""
+
+from __future__ import annotations
+
+import importlib
+from itertools import chain
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import click
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+
+class Subcommand(NamedTuple):
+    """Where a command is, and its line in the help.
+
+    Attributes:
+        module: below ``fatektool.cli``; it has the command NAME as ``NAME_command``.
+        help: one line.
+    """
+
+    module: str
+    help: str
+
+
+class LazyGroup(click.Group):
+    """A group that knows its commands by name, and loads the one that is asked for.
+
+    Args:
+        sections: the commands by name, in the order of the help, under the heading of their section.
+        attrs: as for ``click.Group``.
+    """
+
+    def __init__(self, *, sections: Mapping[str, Mapping[str, Subcommand]], **attrs: Any) -> None:
+        super().__init__(**attrs)
+        self.sections = sections
+        self.subcommands = dict(chain.from_iterable(section.items() for section in sections.values()))
+
+    def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002  # click's signature
+        """All commands, in the order of the help."""
+        return list(self.subcommands)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:  # noqa: ARG002
+        """Load one command."""
+        found = self.subcommands.get(cmd_name)
+        if found is None:
+            return None
+        module = importlib.import_module(f"fatektool.cli.{found.module}")
+        command = getattr(module, f"{cmd_name}_command")
+        return command if isinstance(command, click.Command) else None
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Find the command, and for a wrong name say which are near."""
+        name = args[0]
+        if name not in self.subcommands and not name.startswith("-"):
+            from difflib import get_close_matches
+
+            near = get_close_matches(name, self.subcommands, 3, 0.6)
+            meant = f"; did you mean {' or '.join(near)}?" if near else ""
+            raise click.UsageError(f"no such command {name!r}{meant}", ctx)
+        return super().resolve_command(ctx, args)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
+        """Write the commands by section, without loading them."""
+        for heading, section in self.sections.items():
+            with formatter.section(heading):
+                formatter.write_dl([(name, each.help) for name, each in section.items()])
+
+
+def commands(**named: Subcommand) -> Mapping[str, Mapping[str, Subcommand]]:
+    """The commands of a group that has one section."""
+    return {"Commands": named}
