@@ -14,22 +14,21 @@ answer is the value it carries; a command that only acknowledges answers ``None`
 Limits: FACON paper, section 4.2. The M-series paper, section 2.5, has the same numbers of elements: 256
 discretes, 64 registers, 64 and 32 of mixed ones. That a 32-bit element counts as two words, in a run and in a
 mixed request, is FACON's rule; the M-series paper only says "1 to 64 words" in its list of commands. It is
-kept for both. How long a run may be differs from protocol to protocol: the codec checks it, these two by
-``require_run_limit``.
+kept for both. How long a run may be differs from protocol to protocol: the codec checks it.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import TYPE_CHECKING, Any, ClassVar, Final, Generic, TypeVar
+from typing import TYPE_CHECKING, ClassVar, Final, Generic, TypeVar
 
 from fatektool.errors import UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from fatektool.protocol.elements import Element, Kind
+    from fatektool.protocol.elements import Element
     from fatektool.protocol.status import BriefStatus, DetailedStatus, RawStatus  # noqa: F401  # in strings
 
 A = TypeVar("A")
@@ -273,32 +272,6 @@ class ReadDetailedStatus(Request["DetailedStatus | RawStatus"]):
 def _discrete(element: Element, command: Command) -> None:
     if element.kind.bits != 1:
         raise UsageError(f"{command.words} ({command:02X}) takes discretes (X Y M S T C), got {element}")
-
-
-def run_limit(kind: Kind) -> int:
-    """How many elements a run (43 to 47) of FACON and M-series holds: 32 of 32 bits, by FACON's rule."""
-    return MAX_DISCRETES if kind.bits == 1 else MAX_READ_WORDS // kind.words
-
-
-_READ_RUNS: Final = (ReadDisabled, ReadDiscretes, ReadRegisters)
-_WRITE_RUNS: Final = (WriteDiscretes, WriteRegisters)
-
-
-def require_run_limit(request: Request[Any]) -> None:
-    """Check a run against the limits of FACON and M-series; other requests have theirs in every protocol.
-
-    Raises:
-        UsageError: it is longer.
-    """
-    if isinstance(request, _READ_RUNS):
-        count = request.count
-    elif isinstance(request, _WRITE_RUNS):
-        count = len(request.values)
-    else:
-        return
-    limit = run_limit(request.first.kind)
-    if count > limit:
-        _run(request.first, count, limit, request.command)
 
 
 def _discrete_run(first: Element, count: int, command: Command) -> None:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from fatektool.errors import UsageError
 from fatektool.protocol.elements import KINDS, Element
-from fatektool.protocol.fatek.facon.text import element_text, take_element
+from fatektool.protocol.fatek.facon.text import TEXT
 from tests.protocol.strategies import elements
 
 Row = tuple[str, int, int, int, bytes, bytes]
@@ -68,8 +68,8 @@ def test_kind(row: Row) -> None:
     assert len(first) == {1: 5, 16: 6, 32: 7}[bits]
     for written in (first, last):
         element = Element.parse(written.decode())
-        assert element_text(element) == written
-        assert take_element(written, 0) == (element, len(written))
+        assert TEXT.element(element) == written
+        assert TEXT.take_element(written, 0) == (element, len(written))
     assert Element(symbol, 0).after(1) == Element(symbol, stride)
 
 
@@ -187,12 +187,12 @@ def test_elements_sort_by_kind_and_address() -> None:
 @given(elements(), st.integers(0, 3), st.booleans())
 def test_round_trip(element: Element, zeros: int, lower: bool) -> None:
     assert Element.parse(str(element)) == element
-    assert Element.parse(element_text(element).decode()) == element
+    assert Element.parse(TEXT.element(element).decode()) == element
     text = f"{element.symbol}{'0' * zeros}{element.address}"
     assert Element.parse(text.lower() if lower else text) == element
-    assert take_element(b"07" + element_text(element) + b"ABCD", 2) == (
+    assert TEXT.take_element(b"07" + TEXT.element(element) + b"ABCD", 2) == (
         element,
-        2 + len(element_text(element)),
+        2 + len(TEXT.element(element)),
     )
 
 

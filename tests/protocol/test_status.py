@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from fatektool.errors import FrameError
 from fatektool.protocol.commands import ReadBriefStatus
-from fatektool.protocol.fatek.facon.data import parse_answer
+from fatektool.protocol.fatek.facon.data import DATA
 from fatektool.protocol.status import BriefStatus, DetailedStatus, StatusFlags
 from tests.protocol.vectors import FBE_28MC, FBE_28MC_BYTES
 
@@ -90,7 +90,7 @@ def test_models(code: int, model: str | None) -> None:
 
 
 def test_a_real_unit_whose_model_no_paper_lists() -> None:
-    status = parse_answer(ReadBriefStatus(), b"0014000")
+    status = DATA.parse_answer(ReadBriefStatus(), b"0014000")
     assert status.flags.running
     assert (status.status2, status.status3, status.model) == (0x40, 0, None)
 

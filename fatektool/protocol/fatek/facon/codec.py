@@ -17,14 +17,14 @@ import re
 from typing import TYPE_CHECKING, Final, TypeVar
 from zlib import adler32
 
-from fatektool.errors import FrameError, UsageError
+from fatektool.errors import FrameError, PlcRefused, UsageError
 from fatektool.protocol.codec import Frame
-from fatektool.protocol.fatek.commands import FatekCommands
-from fatektool.protocol.fatek.facon import data as facon_data
+from fatektool.protocol.fatek.codec import FatekCodec
+from fatektool.protocol.fatek.facon.data import DATA
 from fatektool.protocol.plc_errors import meaning_of
 
 if TYPE_CHECKING:
-    from fatektool.protocol.commands import Command, Request
+    from fatektool.protocol.commands import Request
 
 A = TypeVar("A")
 
@@ -152,55 +152,24 @@ def _checked(raw: bytes, station: bytes, command: bytes, data: bytes, checksum: 
     return Frame(_VALUES[station], _VALUES[command], data, raw)
 
 
-class FaconCodec(FatekCommands):
-    """FACON ASCII as a ``Codec``."""
+class FaconCodec(FatekCodec):
+    """FACON ASCII as a ``Codec``; requests and answers have the same form."""
 
-    name: Final = "facon"
-    commands: Final[frozenset[Command]] = facon_data.COMMANDS
-    last_error: Final = 0xF
-    loopback_alphabet: Final = bytes(char for char in range(128) if char not in STX + ETX)
-    data_bits: Final = 7
-    default_tcp_port: Final = 500
+    name = "facon"
+    commands = DATA.commands
+    loopback_alphabet = bytes(char for char in range(128) if char not in STX + ETX)
+    data_bits = 7
+    default_tcp_port = 500
+    last_error = 0xF
+    data = DATA
+    framing_bytes = FRAMING_BYTES
+
+    def __init__(self) -> None:
+        super().__init__(frame_bytes, frame_bytes)
 
     def decoder(self) -> FaconDecoder:
         """A new decoder for one stream."""
         return FaconDecoder()
-
-    def encode(self, station: int, request: Request[A], number: int = 0) -> bytes:
-        """The request as one frame for this station."""
-        del number  # a frame has no room for it
-        return frame_bytes(station, request.command, facon_data.request_data(request))
-
-    def parse_request(self, frame: Frame) -> Request[object]:
-        """The request that a frame holds."""
-        return facon_data.parse_request(frame.command, frame.data)
-
-    def parse_answer(self, request: Request[A], frame: Frame) -> A:
-        """What a frame answers to this request."""
-        return facon_data.parse_answer(request, frame.data)
-
-    def encode_answer(self, station: int, request: Request[A], answer: A, number: int = 0) -> bytes:
-        """The frame in which a PLC gives this answer."""
-        del number
-        return frame_bytes(station, request.command, facon_data.answer_data(request, answer))
-
-    def encode_raw(
-        self,
-        station: int,
-        command: int,
-        data: bytes,
-        number: int = 0,
-        *,
-        answer: bool = False,
-    ) -> bytes:
-        """A frame with any command and data; requests and answers have the same form."""
-        del number, answer
-        return frame_bytes(station, command, data)
-
-    def encode_refusal(self, station: int, command: int, code: int, number: int = 0) -> bytes:
-        """The frame in which a PLC refuses this command."""
-        del number
-        return frame_bytes(station, command, b"%X" % code)
 
     def checksum(self, data: bytes) -> bytes:
         """The LRC of everything from STX to the last data byte."""
@@ -210,17 +179,19 @@ class FaconCodec(FatekCommands):
         """An error code in words."""
         return meaning_of(code)
 
-    def request_bytes(self, request: Request[A]) -> int:
-        """Length of the frame that asks this, in bytes."""
-        return FRAMING_BYTES + len(facon_data.request_data(request))
-
-    def answer_bytes(self, request: Request[A]) -> int:
-        """Length of the frame that answers this request, in bytes."""
-        return FRAMING_BYTES + facon_data.answer_chars(request)
-
     def echo_may_pass(self, request: Request[A]) -> bool:
-        """True if the request's own echo could be taken for its answer."""
-        return facon_data.echo_may_pass(request)
+        """True if a request's own data reads as an answer to it.
+
+        The echo of 4E and of STOP reads as a good answer, so does that of one DD under 46 and of some under
+        48, which are all hex digits; that of RUN reads as error 1.
+        """
+        try:
+            self.data.parse_answer(request, self.data.request_data(request))
+        except FrameError:
+            return False
+        except PlcRefused:
+            return True
+        return True
 
 
 FACON: Final = FaconCodec()

@@ -1,4 +1,4 @@
-"""The pieces of a FACON data field: counts, elements, values, in strict capitals (paper, section 4.1).
+"""How FACON writes the pieces of a data field: in characters, in strict capitals (FACON paper, section 4.1).
 
 ::
 
@@ -9,123 +9,101 @@
 
 from __future__ import annotations
 
-import struct
 from binascii import unhexlify
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, ClassVar, Final
 
 from fatektool.errors import FrameError, UsageError
-from fatektool.protocol.commands import MAX_DISCRETES
 from fatektool.protocol.elements import KINDS, Element
+from fatektool.protocol.fatek.notation import Notation
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
 HEX_DIGITS: Final = b"0123456789ABCDEF"
-CHARS: Final = {1: 1, 16: 4, 32: 8}
-"""Characters of one value, by the element's bits."""
-
 _LETTERS: Final = b"ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
 
-def element_text(element: Element) -> bytes:
-    """An element as FACON writes it: ``R00012``, ``X0016``, ``DWM0000``."""
-    return b"%b%0*d" % (element.symbol.encode(), element.kind.digits, element.address)
+class Text(Notation):
+    """Characters."""
+
+    unit = "characters"
+    octet = 2
+    value_sizes: ClassVar[Mapping[int, int]] = {1: 1, 16: 4, 32: 8}
+    no_error = b"0"
+    error_name = "error character"
+    bit_alphabet = b"01"
+    value_alphabet = HEX_DIGITS
+
+    def octets(self, data: bytes) -> bytes:
+        """Bytes as capital hex digits."""
+        return data.hex().upper().encode()
+
+    def take_octets(self, raw: bytes) -> bytes:
+        """Bytes of capital hex digits; anything else is a ``FrameError``."""
+        try:
+            if raw == raw.upper():
+                return unhexlify(raw)
+        except ValueError:
+            pass
+        raise FrameError("expected capital hex digits in pairs", raw=raw)
+
+    def bits(self, values: Iterable[bool]) -> bytes:
+        """Discretes as a character each."""
+        return bytes(0x31 if value else 0x30 for value in values)
+
+    def take_bits(self, raw: bytes) -> tuple[bool, ...]:
+        """Read discretes, a character each."""
+        if raw.translate(None, b"01"):
+            raise FrameError("expected 0 or 1 for each discrete", raw=raw)
+        return tuple(char == 0x31 for char in raw)
+
+    def digit(self, value: int) -> bytes:
+        """A control or error code as one hex digit."""
+        return b"%X" % value
+
+    def shown(self, value: int) -> str:
+        """One hex digit."""
+        return f"{value:X}"
+
+    def count(self, number: int) -> bytes:
+        """A number of elements, 1 to 256, as two hex digits; 256 is ``00``."""
+        return b"%02X" % (number & 0xFF)
+
+    def take_count(self, data: bytes) -> int:
+        """Read the two digits of a number of elements, 0 to 255."""
+        return self.take_octets(data[:2].rjust(2, b"?"))[0]
+
+    def element(self, element: Element) -> bytes:
+        """``R00012``, ``X0016``, ``DWM0000``."""
+        return b"%b%0*d" % (element.symbol.encode(), element.kind.digits, element.address)
+
+    def element_size(self, element: Element) -> int:
+        """Symbol and digits."""
+        return len(element.symbol) + element.kind.digits
+
+    def take_element(self, data: bytes, at: int) -> tuple[Element, int]:
+        """Read one element: all letters are the symbol."""
+        place = at
+        while place < len(data) and data[place] in _LETTERS:
+            place += 1
+        kind = KINDS.get(data[at:place].decode("ascii"))
+        if kind is None:
+            raise FrameError(f"no element at character {at} of the data", raw=data)
+        digits = data[place : place + kind.digits]
+        if len(digits) != kind.digits or not digits.isdigit():
+            raise FrameError(f"{kind.symbol}: expected {kind.digits} decimal digits", raw=data)
+        try:
+            return Element(kind.symbol, int(digits)), place + kind.digits
+        except UsageError as error:
+            raise FrameError(error.message, raw=data) from error
+
+    def error_code(self, data: bytes) -> int | None:
+        """One hex digit, 1 to F."""
+        return int(data, 16) if len(data) == 1 and data != b"0" and data in HEX_DIGITS else None
+
+    def wrong_error(self, data: bytes) -> FrameError:
+        """For an answer of the right length that does not begin with 0."""
+        return FrameError(f"expected the error character 0 before the data, got {data[:1]!r}", raw=data)
 
 
-def take_element(data: bytes, at: int) -> tuple[Element, int]:
-    """Read one element; give it and the place behind it.
-
-    Raises:
-        FrameError: there is none.
-    """
-    place = at
-    while place < len(data) and data[place] in _LETTERS:
-        place += 1
-    kind = KINDS.get(data[at:place].decode("ascii"))
-    if kind is None:
-        raise FrameError(f"no element at character {at} of the data", raw=data)
-    digits = data[place : place + kind.digits]
-    if len(digits) != kind.digits or not digits.isdigit():
-        raise FrameError(f"{kind.symbol}: expected {kind.digits} decimal digits", raw=data)
-    try:
-        return Element(kind.symbol, int(digits)), place + kind.digits
-    except UsageError as error:
-        raise FrameError(error.message, raw=data) from error
-
-
-def unhex(chars: bytes) -> bytes:
-    """Bytes of capital hex digits; anything else is a ``FrameError``."""
-    try:
-        if chars == chars.upper():
-            return unhexlify(chars)
-    except ValueError:
-        pass
-    raise FrameError("expected capital hex digits in pairs", raw=chars)
-
-
-def to_hex(data: bytes) -> bytes:
-    """Bytes as capital hex digits."""
-    return data.hex().upper().encode()
-
-
-def count_text(number: int) -> bytes:
-    """A number of elements, 1 to 256, as two hex digits; 256 is ``00``."""
-    return b"%02X" % (number & 0xFF)
-
-
-def take_count(data: bytes) -> int:
-    """Read the two digits of a number of elements, 0 to 255."""
-    return unhex(data[:2].rjust(2, b"?"))[0]
-
-
-def bits_text(values: Iterable[bool]) -> bytes:
-    """Discretes as a character each."""
-    return bytes(0x31 if value else 0x30 for value in values)
-
-
-def take_bits(chars: bytes) -> tuple[bool, ...]:
-    """Read discretes, a character each."""
-    if chars.translate(None, b"01"):
-        raise FrameError("expected 0 or 1 for each discrete", raw=chars)
-    return tuple(char == 0x31 for char in chars)
-
-
-def words_text(values: tuple[int, ...], bits: int) -> bytes:
-    """Unsigned values of 16 or 32 bits as 4 or 8 digits each."""
-    return to_hex(struct.pack(f">{len(values)}{'I' if bits == 32 else 'H'}", *values))
-
-
-def take_words(chars: bytes, bits: int) -> tuple[int, ...]:
-    """Read unsigned values of 16 or 32 bits."""
-    data = unhex(chars)
-    size, code = (4, "I") if bits == 32 else (2, "H")
-    if len(data) % size:
-        raise FrameError(f"expected values of {bits} bits", raw=chars)
-    return struct.unpack(f">{len(data) // size}{code}", data)
-
-
-def value_text(element: Element, value: int) -> bytes:
-    """One value, in the characters that its element's width takes."""
-    return b"%0*X" % (CHARS[element.kind.bits], value)
-
-
-def take_value(element: Element, chars: bytes) -> int:
-    """Read one value of an element's width."""
-    if element.kind.bits == 1:
-        return int(take_bits(chars)[0])
-    return int.from_bytes(unhex(chars), "big")
-
-
-def take_run(data: bytes, *, zero_is_256: bool) -> tuple[Element, int, bytes]:
-    """Read number and first element of a run; give element, number and the rest."""
-    count = take_count(data)
-    if not count and zero_is_256:
-        count = MAX_DISCRETES
-    element, at = take_element(data, 2)
-    return element, count, data[at:]
-
-
-def nothing_after(rest: bytes) -> None:
-    """Refuse characters that no field accounts for."""
-    if rest:
-        raise FrameError(f"{len(rest)} characters too many", raw=rest)
+TEXT: Final = Text()

@@ -1,4 +1,4 @@
-"""The pieces of an M-series data field: counts, elements, values, in binary (M-series paper, section 2.4).
+"""How the M-series writes the pieces of a data field: in bytes (M-series paper, section 2.4).
 
 ::
 
@@ -13,67 +13,109 @@ as RC does. Such an element is never sent.
 
 from __future__ import annotations
 
-import struct
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, ClassVar, Final
 
 from fatektool.errors import FrameError, UsageError
-from fatektool.protocol.commands import MAX_DISCRETES
 from fatektool.protocol.elements import KINDS, Element
+from fatektool.protocol.fatek.notation import Notation
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping
 
-ADDRESS_BYTES: Final = 2
-VALUE_BYTES: Final = {1: 1, 16: 2, 32: 4}
-"""Bytes of one value, by the element's bits."""
-
+_ADDRESS_BYTES: Final = 2
 _SYMBOLS: Final = {symbol.encode(): symbol for symbol in KINDS}
 _LONGEST: Final = max(map(len, _SYMBOLS))
 _FIRST_LETTER: Final = ord("A") << 8
 """Below this an address has no letter for its high byte."""
 
 
-def element_size(element: Element) -> int:
-    """How many bytes an element takes."""
-    return len(element.symbol) + ADDRESS_BYTES
+class Binary(Notation):
+    """Bytes."""
 
+    unit = "bytes"
+    octet = 1
+    value_sizes: ClassVar[Mapping[int, int]] = {1: 1, 16: 2, 32: 4}
+    no_error = b"\0"
+    error_name = "error byte"
+    bit_alphabet = bytes(range(256))
+    value_alphabet = bytes(range(256))
 
-def element_bytes(element: Element) -> bytes:
-    """An element as it is sent: ``52 00 0C``.
-
-    Raises:
-        UsageError: the receiver would take it for another.
-    """
-    data = element.symbol.encode() + element.address.to_bytes(ADDRESS_BYTES, "big")
-    if element.address < _FIRST_LETTER:
+    def octets(self, data: bytes) -> bytes:
+        """As they are."""
         return data
-    seen = _symbol_at(data, 0)
-    if seen != element.symbol:
-        raise UsageError(
-            f"{element} cannot be named in mseries: its bytes {data.hex(' ').upper()} begin as {seen} does",
-            hint="read or write it in a run that begins below it",
-            element=str(element),
-        )
-    return data
 
+    def take_octets(self, raw: bytes) -> bytes:
+        """As they are."""
+        return raw
 
-def take_element(data: bytes, at: int) -> tuple[Element, int]:
-    """Read one element; give it and the place behind it.
+    def bits(self, values: Iterable[bool]) -> bytes:
+        """Discretes as a byte each."""
+        return bytes(values)
 
-    Raises:
-        FrameError: there is none.
-    """
-    symbol = _symbol_at(data, at)
-    if symbol is None:
-        raise FrameError(f"no element at byte {at} of the data", raw=data)
-    place = at + len(symbol)
-    address = data[place : place + ADDRESS_BYTES]
-    if len(address) != ADDRESS_BYTES:
-        raise FrameError(f"{symbol}: expected an address of {ADDRESS_BYTES} bytes", raw=data)
-    try:
-        return Element(symbol, int.from_bytes(address, "big")), place + ADDRESS_BYTES
-    except UsageError as error:
-        raise FrameError(error.message, raw=data) from error
+    def take_bits(self, raw: bytes) -> tuple[bool, ...]:
+        """Read discretes, a byte each."""
+        if raw.translate(None, b"\0\1"):
+            raise FrameError("expected 00 or 01 for each discrete", raw=raw)
+        return tuple(map(bool, raw))
+
+    def digit(self, value: int) -> bytes:
+        """A control code as one byte."""
+        return bytes([value])
+
+    def shown(self, value: int) -> str:
+        """One byte in hex."""
+        return f"{value:02X}"
+
+    def count(self, number: int) -> bytes:
+        """A number of elements, 1 to 256, as one byte; 256 is 00."""
+        return bytes([number & 0xFF])
+
+    def take_count(self, data: bytes) -> int:
+        """Read the byte of a number of elements, 0 to 255."""
+        if not data:
+            raise FrameError("expected a number of elements", raw=data)
+        return data[0]
+
+    def element(self, element: Element) -> bytes:
+        """``52 00 0C``; not those that the receiver would take for another."""
+        data = element.symbol.encode() + element.address.to_bytes(_ADDRESS_BYTES, "big")
+        if element.address < _FIRST_LETTER:
+            return data
+        seen = _symbol_at(data, 0)
+        if seen != element.symbol:
+            raise UsageError(
+                f"{element} cannot be named in mseries: "
+                f"its bytes {data.hex(' ').upper()} begin as {seen} does",
+                hint="read or write it in a run that begins below it",
+                element=str(element),
+            )
+        return data
+
+    def element_size(self, element: Element) -> int:
+        """Symbol and address."""
+        return len(element.symbol) + _ADDRESS_BYTES
+
+    def take_element(self, data: bytes, at: int) -> tuple[Element, int]:
+        """Read one element: the longest symbol that is there."""
+        symbol = _symbol_at(data, at)
+        if symbol is None:
+            raise FrameError(f"no element at byte {at} of the data", raw=data)
+        place = at + len(symbol)
+        address = data[place : place + _ADDRESS_BYTES]
+        if len(address) != _ADDRESS_BYTES:
+            raise FrameError(f"{symbol}: expected an address of {_ADDRESS_BYTES} bytes", raw=data)
+        try:
+            return Element(symbol, int.from_bytes(address, "big")), place + _ADDRESS_BYTES
+        except UsageError as error:
+            raise FrameError(error.message, raw=data) from error
+
+    def error_code(self, data: bytes) -> int | None:
+        """One byte, 01 to FF."""
+        return data[0] if len(data) == 1 and data[0] else None
+
+    def wrong_error(self, data: bytes) -> FrameError:
+        """For an answer of the right length that does not begin with 00."""
+        return FrameError(f"expected the error byte 00 before the data, got {data[0]:02X}", raw=data)
 
 
 def _symbol_at(data: bytes, at: int) -> str | None:
@@ -85,71 +127,4 @@ def _symbol_at(data: bytes, at: int) -> str | None:
     return None
 
 
-def count_byte(number: int) -> bytes:
-    """A number of elements, 1 to 256, as one byte; 256 is 00."""
-    return bytes([number & 0xFF])
-
-
-def take_count(data: bytes) -> int:
-    """Read the byte of a number of elements, 0 to 255."""
-    if not data:
-        raise FrameError("expected a number of elements", raw=data)
-    return data[0]
-
-
-def take_run(data: bytes, *, zero_is_256: bool) -> tuple[Element, int, bytes]:
-    """Read number and first element of a run; give element, number and the rest."""
-    count = take_count(data)
-    if not count and zero_is_256:
-        count = MAX_DISCRETES
-    element, at = take_element(data, 1)
-    return element, count, data[at:]
-
-
-def value_bytes(element: Element, value: int) -> bytes:
-    """One value, in the bytes that its element's width takes."""
-    return value.to_bytes(VALUE_BYTES[element.kind.bits], "big")
-
-
-def take_value(element: Element, data: bytes) -> int:
-    """Read one value of an element's width."""
-    if element.kind.bits == 1:
-        return int(take_bits(data)[0])
-    return int.from_bytes(data, "big")
-
-
-def take_bits(data: bytes) -> tuple[bool, ...]:
-    """Read discretes, a byte each."""
-    if data.translate(None, b"\0\1"):
-        raise FrameError("expected 00 or 01 for each discrete", raw=data)
-    return tuple(map(bool, data))
-
-
-def words_bytes(values: Sequence[int], bits: int) -> bytes:
-    """Unsigned values of 16 or 32 bits."""
-    return struct.pack(f">{len(values)}{'I' if bits == 32 else 'H'}", *values)
-
-
-def take_words(data: bytes, bits: int) -> tuple[int, ...]:
-    """Read unsigned values of 16 or 32 bits."""
-    size, code = (4, "I") if bits == 32 else (2, "H")
-    if len(data) % size:
-        raise FrameError(f"expected values of {bits} bits", raw=data)
-    return struct.unpack(f">{len(data) // size}{code}", data)
-
-
-def take_values(elements: Iterable[Element], data: bytes) -> tuple[int, ...]:
-    """Read a value for each of these elements, as many bytes as they take."""
-    values = []
-    at = 0
-    for element in elements:
-        end = at + VALUE_BYTES[element.kind.bits]
-        values.append(take_value(element, data[at:end]))
-        at = end
-    return tuple(values)
-
-
-def nothing_after(rest: bytes) -> None:
-    """Refuse bytes that no field accounts for."""
-    if rest:
-        raise FrameError(f"{len(rest)} bytes too many", raw=rest)
+BINARY: Final = Binary()

@@ -23,17 +23,18 @@ one wait for more.
 from __future__ import annotations
 
 import re
+from functools import partial
 from typing import TYPE_CHECKING, Final, TypeVar
 
 from fatektool.errors import FrameError, UsageError
-from fatektool.protocol.codec import Frame, require_commands
-from fatektool.protocol.fatek.commands import FatekCommands
-from fatektool.protocol.fatek.mseries import data as mseries_data
+from fatektool.protocol.codec import Frame
+from fatektool.protocol.fatek.codec import FatekCodec
 from fatektool.protocol.fatek.mseries.crc import crc_bytes
+from fatektool.protocol.fatek.mseries.data import DATA
 from fatektool.protocol.fatek.mseries.errors import meaning_of
 
 if TYPE_CHECKING:
-    from fatektool.protocol.commands import Command, Request
+    from fatektool.protocol.commands import Request
 
 A = TypeVar("A")
 
@@ -172,61 +173,36 @@ def parse_frame(raw: bytes) -> Frame:
     return Frame(raw[4], raw[5], raw[6:-4], raw)
 
 
-class MseriesCodec(FatekCommands):
+class MseriesCodec(FatekCodec):
     """M-series binary as a ``Codec``."""
 
-    name: Final = "mseries"
-    commands: Final[frozenset[Command]] = mseries_data.COMMANDS
-    last_error: Final = 0xFF
-    loopback_alphabet: Final = bytes(range(256))
-    data_bits: Final = 8
-    default_tcp_port: Final = None
+    name = "mseries"
+    commands = DATA.commands
+    loopback_alphabet = bytes(range(256))
+    data_bits = 8
+    default_tcp_port = None
+    last_error = 0xFF
+    data = DATA
+    framing_bytes = FRAMING_BYTES + MIN_PAYLOAD
+
+    def __init__(self) -> None:
+        super().__init__(partial(frame_bytes, QUERY), partial(frame_bytes, RESPONSE))
 
     def decoder(self) -> MseriesDecoder:
         """A new decoder for one stream."""
         return MseriesDecoder()
 
-    def encode(self, station: int, request: Request[A], number: int = 0) -> bytes:
-        """The request as one frame for this station."""
-        del number  # a frame has no room for it
-        if request.command not in self.commands:
-            require_commands(self, request.command)
-        return frame_bytes(QUERY, station, request.command, mseries_data.request_data(request))
-
     def parse_request(self, frame: Frame) -> Request[object]:
         """The request that a frame holds."""
         if frame.raw[0] != QUERY:
             raise FrameError("an answer (52), expected a request (51)", raw=frame.raw)
-        return mseries_data.parse_request(frame.command, frame.data)
+        return super().parse_request(frame)
 
     def parse_answer(self, request: Request[A], frame: Frame) -> A:
         """What a frame answers to this request."""
         if frame.raw[0] != RESPONSE:
             raise FrameError("a request (51), expected an answer (52)", raw=frame.raw)
-        return mseries_data.parse_answer(request, frame.data)
-
-    def encode_answer(self, station: int, request: Request[A], answer: A, number: int = 0) -> bytes:
-        """The frame in which a PLC gives this answer."""
-        del number
-        return frame_bytes(RESPONSE, station, request.command, mseries_data.answer_data(request, answer))
-
-    def encode_raw(
-        self,
-        station: int,
-        command: int,
-        data: bytes,
-        number: int = 0,
-        *,
-        answer: bool = False,
-    ) -> bytes:
-        """A frame with any command and data."""
-        del number
-        return frame_bytes(RESPONSE if answer else QUERY, station, command, data)
-
-    def encode_refusal(self, station: int, command: int, code: int, number: int = 0) -> bytes:
-        """The frame in which a PLC refuses this command."""
-        del number
-        return frame_bytes(RESPONSE, station, command, bytes([code]))
+        return self.data.parse_answer(request, frame.data)
 
     def checksum(self, data: bytes) -> bytes:
         """The CRC of length and payload."""
@@ -235,14 +211,6 @@ class MseriesCodec(FatekCommands):
     def error_text(self, code: int) -> str:
         """An error code in words."""
         return meaning_of(code)
-
-    def request_bytes(self, request: Request[A]) -> int:
-        """Length of the frame that asks this, in bytes."""
-        return FRAMING_BYTES + MIN_PAYLOAD + len(mseries_data.request_data(request))
-
-    def answer_bytes(self, request: Request[A]) -> int:
-        """Length of the frame that answers this request, in bytes; of 53 that of FACON's 64 bytes."""
-        return FRAMING_BYTES + MIN_PAYLOAD + mseries_data.answer_size(request)
 
     def echo_may_pass(self, request: Request[A]) -> bool:  # noqa: ARG002  # the interface's
         """False: a request begins with 51, an answer with 52."""

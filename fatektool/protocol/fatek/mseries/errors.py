@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from typing import Final
 
+from fatektool.errors import PlcRefused
+
 MEANINGS: Final = {
     0x02: "illegal value",
     0x04: "illegal format, or a command that cannot be executed",
@@ -16,7 +18,7 @@ MEANINGS: Final = {
     0x09: "cannot run, function not supported",
     0x0A: "illegal address",
 }
-NEXT: Final = {
+_NEXT: Final = {
     0x05: "the program in the PLC is damaged: put it in again with the vendor's program",
     0x06: "the program was locked to a PLC with another ID: load one made for this PLC, or set the ID",
     0x07: "put in a program that ran on this PLC, with the vendor's program",
@@ -29,3 +31,19 @@ NEXT: Final = {
 def meaning_of(code: int) -> str:
     """What an error code means, in words."""
     return MEANINGS.get(code, "a code that the M-series paper does not list")
+
+
+def refusal(code: int, command: int, asked: str) -> PlcRefused:
+    """The exception for an error code.
+
+    Args:
+        code: 1 to 255.
+        command: the command's code.
+        asked: what was asked, in words: ``read registers R12``.
+    """
+    return PlcRefused(
+        f"the PLC refused to {asked} ({command:02X}): error {code:X}, {meaning_of(code)}",
+        code=code,
+        command=command,
+        hint=_NEXT.get(code),
+    )

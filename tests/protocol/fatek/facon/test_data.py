@@ -26,7 +26,7 @@ from fatektool.protocol.commands import (
 )
 from fatektool.protocol.elements import Element
 from fatektool.protocol.fatek.facon.codec import FACON
-from fatektool.protocol.fatek.facon.data import answer_data, parse_answer, parse_request
+from fatektool.protocol.fatek.facon.data import DATA
 from fatektool.protocol.plc_errors import MEANINGS, PROGRAM_REFUSED, asked, refusal
 from fatektool.protocol.status import DetailedStatus
 from tests.protocol.strategies import BY_COMMAND
@@ -118,7 +118,7 @@ def test_every_command_is_drawn() -> None:
 )
 def test_no_request(command: int, data: bytes, why: str) -> None:
     with pytest.raises(FrameError, match=why):
-        parse_request(command, data)
+        DATA.parse_request(command, data)
 
 
 # --- answers that are none ------------------------------------------------------------------------
@@ -163,24 +163,24 @@ WRONG_ANSWERS: list[tuple[Request[Any], bytes, str]] = [
 @pytest.mark.parametrize(("request_", "data", "why"), WRONG_ANSWERS)
 def test_no_answer(request_: Request[Any], data: bytes, why: str) -> None:
     with pytest.raises(FrameError, match=why):
-        parse_answer(request_, data)
+        DATA.parse_answer(request_, data)
 
 
 def test_a_page_with_and_without_the_error_character() -> None:
-    assert parse_answer(ReadPage(0), b"0" + PAGE_HEX) == PAGE
-    assert parse_answer(ReadPage(0), PAGE_HEX) == PAGE
+    assert DATA.parse_answer(ReadPage(0), b"0" + PAGE_HEX) == PAGE
+    assert DATA.parse_answer(ReadPage(0), PAGE_HEX) == PAGE
     zeros = bytes(128)
-    assert parse_answer(ReadPage(0), 257 * b"0") == zeros
-    assert parse_answer(ReadPage(0), 256 * b"0") == zeros
-    assert answer_data(ReadPage(0), PAGE) == b"0" + PAGE_HEX
+    assert DATA.parse_answer(ReadPage(0), 257 * b"0") == zeros
+    assert DATA.parse_answer(ReadPage(0), 256 * b"0") == zeros
+    assert DATA.answer_data(ReadPage(0), PAGE) == b"0" + PAGE_HEX
 
 
 def test_detailed_status_with_and_without_the_error_character() -> None:
     written = FBE_28MC_BYTES.hex().upper().encode()
     status = DetailedStatus.parse(FBE_28MC_BYTES)
-    assert parse_answer(ReadDetailedStatus(), b"0" + written) == status
-    assert parse_answer(ReadDetailedStatus(), written) == status
-    assert answer_data(ReadDetailedStatus(), status) == b"0" + written
+    assert DATA.parse_answer(ReadDetailedStatus(), b"0" + written) == status
+    assert DATA.parse_answer(ReadDetailedStatus(), written) == status
+    assert DATA.answer_data(ReadDetailedStatus(), status) == b"0" + written
 
 
 # --- error codes ----------------------------------------------------------------------------------
@@ -200,7 +200,7 @@ def requests_that_can_be_refused() -> list[Request[Any]]:
 @pytest.mark.parametrize("code", range(1, 16))
 def test_error_codes(request_: Request[Any], code: int) -> None:
     with pytest.raises(PlcRefused) as caught:
-        parse_answer(request_, b"%X" % code)
+        DATA.parse_answer(request_, b"%X" % code)
     refused = caught.value
     assert (refused.code, refused.command) == (code, request_.command)
     assert refused.details == {"code": f"{code:X}", "command": f"{request_.command:02X}"}
@@ -246,16 +246,16 @@ def test_an_error_character_is_one_capital_hex_digit(data: bytes) -> None:
     for request in requests_that_can_be_refused():
         if request.command != Command.LOOPBACK:
             with pytest.raises(FrameError):
-                parse_answer(request, data)
+                DATA.parse_answer(request, data)
 
 
 def test_loopback_has_no_error_character() -> None:
-    assert parse_answer(Loopback(b"4"), b"4") == b"4"
-    assert parse_answer(Loopback(b"0"), b"0") == b"0"
-    assert parse_answer(Loopback(b""), b"") == b""
-    assert parse_answer(Loopback(b"AB"), b"AC") == b"AC"  # the link tells nonces apart
+    assert DATA.parse_answer(Loopback(b"4"), b"4") == b"4"
+    assert DATA.parse_answer(Loopback(b"0"), b"0") == b"0"
+    assert DATA.parse_answer(Loopback(b""), b"") == b""
+    assert DATA.parse_answer(Loopback(b"AB"), b"AC") == b"AC"  # the link tells nonces apart
     with pytest.raises(PlcRefused):
-        parse_answer(Loopback(b"AB"), b"4")
+        DATA.parse_answer(Loopback(b"AB"), b"4")
 
 
 # --- echoes ---------------------------------------------------------------------------------------

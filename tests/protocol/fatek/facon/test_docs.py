@@ -12,7 +12,7 @@ from fatektool.protocol.commands import COMMAND_WORDS, Command
 from fatektool.protocol.elements import KINDS, Element
 from fatektool.protocol.explain import Explanation, Role
 from fatektool.protocol.fatek.facon.codec import FACON
-from fatektool.protocol.fatek.facon.text import element_text
+from fatektool.protocol.fatek.facon.text import TEXT
 from fatektool.protocol.plc_errors import MEANINGS
 from fatektool.protocol.registry import new_explainer
 from fatektool.protocol.status import MODELS, POINTS_FB, POINTS_FBS
@@ -138,8 +138,8 @@ def test_elements() -> None:
     for symbol, _, bits, first, last, stride, step in rows:
         kind = KINDS[symbol]
         assert (kind.bits, kind.stride, kind.step) == (int(bits), int(stride), int(step))
-        assert element_text(Element(symbol, 0)).decode() == first
-        assert element_text(Element(symbol, kind.last)).decode() == last
+        assert TEXT.element(Element(symbol, 0)).decode() == first
+        assert TEXT.element(Element(symbol, kind.last)).decode() == last
 
 
 def test_codes() -> None:

@@ -22,9 +22,9 @@ from fatektool.protocol.commands import (
     WriteRegisters,
 )
 from fatektool.protocol.elements import KINDS, Element
-from fatektool.protocol.fatek.mseries.bytes import element_bytes, element_size, take_element
+from fatektool.protocol.fatek.mseries.bytes import BINARY
 from fatektool.protocol.fatek.mseries.codec import MSERIES
-from fatektool.protocol.fatek.mseries.data import answer_data, parse_answer, parse_request, request_data
+from fatektool.protocol.fatek.mseries.data import DATA
 from fatektool.protocol.fatek.mseries.errors import MEANINGS
 from fatektool.protocol.plc_errors import asked
 from fatektool.protocol.status import BriefStatus, DetailedStatus, RawStatus, StatusFlags
@@ -55,18 +55,18 @@ def test_symbols(symbol: str) -> None:
     for address in (0, 8, KINDS[symbol].last):
         one = Element(symbol, address)
         raw = bytes.fromhex(SYMBOLS[symbol]) + address.to_bytes(2, "big")
-        assert element_bytes(one) == raw
-        assert take_element(b"\7" + raw + b"\x52", 1) == (one, 1 + len(raw))
-        assert element_size(one) == len(raw)
+        assert BINARY.element(one) == raw
+        assert BINARY.take_element(b"\7" + raw + b"\x52", 1) == (one, 1 + len(raw))
+        assert BINARY.element_size(one) == len(raw)
 
 
 @given(elements(KINDS))
 def test_an_element_is_read_as_it_was_sent_or_not_sent(element: Element) -> None:
     try:
-        raw = element_bytes(element)
+        raw = BINARY.element(element)
     except UsageError:
         return
-    assert take_element(raw, 0) == (element, len(raw))
+    assert BINARY.take_element(raw, 0) == (element, len(raw))
 
 
 def test_exactly_the_ambiguous_ones_are_refused() -> None:
@@ -76,7 +76,7 @@ def test_exactly_the_ambiguous_ones_are_refused() -> None:
         for address in range(0, kind.last + 1, kind.step):
             element = Element(symbol, address)
             try:
-                element_bytes(element)
+                BINARY.element(element)
             except UsageError:
                 refused.add(str(element))
     timers, counters = range(0x5400, 0x5500), range(0x4300, 0x4400)
@@ -92,13 +92,15 @@ def test_the_refusal_says_why() -> None:
         MSERIES.encode(1, ReadRegisters(Element("D", 22360), 1))
     assert caught.value.message == ("D22360 cannot be named in mseries: its bytes 44 57 58 begin as DWX does")
     run = ReadRegisters(Element("D", 22350), 20)  # the same register, within a run
-    assert request_data(run) == bytes.fromhex("14 44 57 4E")
+    assert DATA.request_data(run) == bytes.fromhex("14 44 57 4E")
 
 
 def test_the_longest_symbol_is_taken() -> None:
-    assert parse_request(0x46, bytes.fromhex("01 44 57 58 00 10")) == ReadRegisters(Element("DWX", 16), 1)
-    assert parse_request(0x46, bytes.fromhex("01 44 52 00 10")) == ReadRegisters(Element("DR", 16), 1)
-    assert parse_request(0x46, bytes.fromhex("01 44 00 52")) == ReadRegisters(Element("D", 0x52), 1)
+    assert DATA.parse_request(0x46, bytes.fromhex("01 44 57 58 00 10")) == ReadRegisters(
+        Element("DWX", 16), 1
+    )
+    assert DATA.parse_request(0x46, bytes.fromhex("01 44 52 00 10")) == ReadRegisters(Element("DR", 16), 1)
+    assert DATA.parse_request(0x46, bytes.fromhex("01 44 00 52")) == ReadRegisters(Element("D", 0x52), 1)
 
 
 # --- requests that are none -----------------------------------------------------------------------
@@ -156,7 +158,7 @@ def test_the_longest_symbol_is_taken() -> None:
 )
 def test_no_request(command: int, data: str, why: str) -> None:
     with pytest.raises(FrameError, match=why):
-        parse_request(command, bytes.fromhex(data))
+        DATA.parse_request(command, bytes.fromhex(data))
 
 
 # --- answers that are none ------------------------------------------------------------------------
@@ -188,7 +190,7 @@ X0, R0, DR0, DF8 = Element("X", 0), Element("R", 0), Element("DR", 0), Element("
 )
 def test_no_answer(request_: Request[Any], data: str, why: str) -> None:
     with pytest.raises(FrameError, match=why):
-        parse_answer(request_, bytes.fromhex(data))
+        DATA.parse_answer(request_, bytes.fromhex(data))
 
 
 @pytest.mark.parametrize(
@@ -197,28 +199,28 @@ def test_no_answer(request_: Request[Any], data: str, why: str) -> None:
 @pytest.mark.parametrize("code", [*range(1, 16), 0x55, 0xFF])
 def test_error_codes(request_: Request[Any], code: int) -> None:
     with pytest.raises(PlcRefused) as caught:
-        parse_answer(request_, bytes([code]))
+        DATA.parse_answer(request_, bytes([code]))
     assert (caught.value.code, caught.value.command) == (code, request_.command)
     meaning = MEANINGS.get(code, "a code that the M-series paper does not list")
     assert caught.value.message.endswith(f"({request_.command:02X}): error {code:X}, {meaning}")
 
 
 def test_loopback_has_no_error_byte() -> None:
-    assert parse_answer(Loopback(b"\4"), b"\4") == b"\4"
-    assert parse_answer(Loopback(b"\0"), b"\0") == b"\0"
-    assert parse_answer(Loopback(b""), b"") == b""
-    assert parse_answer(Loopback(b"AB"), b"AC") == b"AC"  # the link tells nonces apart
+    assert DATA.parse_answer(Loopback(b"\4"), b"\4") == b"\4"
+    assert DATA.parse_answer(Loopback(b"\0"), b"\0") == b"\0"
+    assert DATA.parse_answer(Loopback(b""), b"") == b""
+    assert DATA.parse_answer(Loopback(b"AB"), b"AC") == b"AC"  # the link tells nonces apart
     with pytest.raises(PlcRefused):
-        parse_answer(Loopback(b"AB"), b"\4")
+        DATA.parse_answer(Loopback(b"AB"), b"\4")
 
 
 # --- limits ---------------------------------------------------------------------------------------
 
 
 def test_256_is_written_as_zero() -> None:
-    assert request_data(ReadDiscretes(X0, 256)) == bytes.fromhex("00 58 00 00")
-    assert request_data(ReadDiscretes(X0, 255)) == bytes.fromhex("FF 58 00 00")
-    assert parse_answer(ReadDiscretes(X0, 256), bytes(257)) == (False,) * 256
+    assert DATA.request_data(ReadDiscretes(X0, 256)) == bytes.fromhex("00 58 00 00")
+    assert DATA.request_data(ReadDiscretes(X0, 255)) == bytes.fromhex("FF 58 00 00")
+    assert DATA.parse_answer(ReadDiscretes(X0, 256), bytes(257)) == (False,) * 256
     assert MSERIES.answer_bytes(ReadDisabled(X0, 256)) == 8 + 2 + 1 + 256
 
 
@@ -231,7 +233,7 @@ def test_file_registers() -> None:
 
 
 def test_brief_status_reserves_what_facon_names_a_model_by() -> None:
-    found = parse_answer(ReadBriefStatus(), bytes.fromhex("00 29 FF 54"))
+    found = DATA.parse_answer(ReadBriefStatus(), bytes.fromhex("00 29 FF 54"))
     assert found == BriefStatus(StatusFlags.parse(0x29), 0xFF, 0x54, m_series=True)
     assert found.model is None
     assert found.flags.running
@@ -240,11 +242,11 @@ def test_brief_status_reserves_what_facon_names_a_model_by() -> None:
 
 
 def test_a_detailed_status_of_64_bytes_is_assumed_to_be_facons() -> None:
-    found = parse_answer(ReadDetailedStatus(), b"\0" + FBE_28MC_BYTES)
+    found = DATA.parse_answer(ReadDetailedStatus(), b"\0" + FBE_28MC_BYTES)
     assert isinstance(found, DetailedStatus)
     assert found.assumed
     assert found == DetailedStatus(FBE_28MC.flags, FBE_28MC.system, FBE_28MC_BYTES, assumed=True)
-    assert answer_data(ReadDetailedStatus(), found) == b"\0" + FBE_28MC_BYTES
+    assert DATA.answer_data(ReadDetailedStatus(), found) == b"\0" + FBE_28MC_BYTES
 
 
 @pytest.mark.parametrize("size", [0, 1, 3, 63, 65, 128, 450])
@@ -252,4 +254,4 @@ def test_any_other_detailed_status_is_kept_raw(size: int) -> None:
     status = RawStatus(bytes(range(256))[:200].ljust(size, b"\7")[:size])
     raw = MSERIES.encode_answer(1, ReadDetailedStatus(), status)
     assert raw == response("01 53 00" + status.raw.hex())
-    assert parse_answer(ReadDetailedStatus(), raw[6:-4]) == status
+    assert DATA.parse_answer(ReadDetailedStatus(), raw[6:-4]) == status

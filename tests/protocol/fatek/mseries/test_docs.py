@@ -9,7 +9,7 @@ import pytest
 
 from fatektool.protocol.elements import KINDS, Element
 from fatektool.protocol.explain import Role
-from fatektool.protocol.fatek.mseries.bytes import element_bytes
+from fatektool.protocol.fatek.mseries.bytes import BINARY
 from fatektool.protocol.fatek.mseries.codec import MAX_PAYLOAD, MSERIES
 from fatektool.protocol.fatek.mseries.crc import crc16
 from fatektool.protocol.plc_errors import MEANINGS
@@ -70,7 +70,7 @@ def test_tables() -> None:
     for symbol, raw, bits, last, stride, step in rows:
         kind = KINDS[symbol]
         assert [kind.bits, kind.last, kind.stride, kind.step] == list(map(int, (bits, last, stride, step)))
-        assert element_bytes(Element(symbol, 0)) == bytes.fromhex(raw) + b"\0\0"
+        assert BINARY.element(Element(symbol, 0)) == bytes.fromhex(raw) + b"\0\0"
 
 
 def test_figures() -> None:

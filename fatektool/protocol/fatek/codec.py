@@ -1,0 +1,149 @@
+"""What FACON and the M-series have in common as codecs: all but the form of a frame."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+
+from fatektool.protocol.codec import require_commands
+from fatektool.protocol.commands import MAX_MIXED_WRITE_WORDS, MAX_READ_WORDS, Loopback, ReadBriefStatus
+from fatektool.protocol.elements import KINDS
+from fatektool.protocol.fatek.fields import run_limit
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection
+
+    from fatektool.protocol.codec import Decoder, Frame
+    from fatektool.protocol.commands import Command, Request
+    from fatektool.protocol.elements import Element
+    from fatektool.protocol.fatek.data import DataFields
+
+A = TypeVar("A")
+
+
+class FatekCodec(ABC):
+    """A ``Codec``; what a frame looks like is FACON's or the M-series' own.
+
+    Args:
+        request_frame: station, command and data as a frame that asks.
+        answer_frame: the same as a frame that answers.
+
+    Attributes:
+        data: how data fields are written.
+        framing_bytes: how many bytes a frame has beside its data.
+    """
+
+    name: ClassVar[str]
+    commands: ClassVar[frozenset[Command]]
+    loopback_alphabet: ClassVar[bytes]
+    data_bits: ClassVar[int]
+    default_tcp_port: ClassVar[int | None]
+    last_error: ClassVar[int]
+    data: ClassVar[DataFields]
+    framing_bytes: ClassVar[int]
+
+    stations: ClassVar[range] = range(1, 255)
+    numbers: ClassVar[int] = 1
+    quiet_chars: ClassVar[float] = 0.0
+    probe: ClassVar[Request[Any]] = ReadBriefStatus()
+
+    def __init__(
+        self,
+        request_frame: Callable[[int, int, bytes], bytes],
+        answer_frame: Callable[[int, int, bytes], bytes],
+    ) -> None:
+        self.request_frame = request_frame
+        self.answer_frame = answer_frame
+
+    @property
+    def same_form(self) -> bool:
+        """True if nothing in a frame says whether it asks or answers."""
+        return self.request_frame == self.answer_frame
+
+    @abstractmethod
+    def decoder(self) -> Decoder:
+        """A new decoder for one stream."""
+
+    @abstractmethod
+    def checksum(self, data: bytes) -> bytes:
+        """The checksum of what it covers."""
+
+    @abstractmethod
+    def error_text(self, code: int) -> str:
+        """An error code in words."""
+
+    @abstractmethod
+    def echo_may_pass(self, request: Request[A]) -> bool:
+        """True if the request's own echo could be taken for its answer."""
+
+    def code(self, request: Request[Any]) -> int:
+        """The command's code."""
+        return request.command
+
+    def encode(self, station: int, request: Request[A], number: int = 0) -> bytes:
+        """The request as one frame for this station."""
+        del number  # a frame has no place for it
+        command = request.command
+        rows = self.data.rows
+        if command not in rows:
+            require_commands(self, command)
+        return self.request_frame(station, command, rows[command].request(self.data.notation, request))
+
+    def parse_request(self, frame: Frame) -> Request[object]:
+        """The request that a frame holds."""
+        return self.data.parse_request(frame.command, frame.data)
+
+    def parse_answer(self, request: Request[A], frame: Frame) -> A:
+        """What a frame answers to this request."""
+        return self.data.parse_answer(request, frame.data)
+
+    def encode_answer(self, station: int, request: Request[A], answer: A, number: int = 0) -> bytes:
+        """The frame in which a PLC gives this answer."""
+        del number
+        return self.answer_frame(station, request.command, self.data.answer_data(request, answer))
+
+    def encode_raw(
+        self,
+        station: int,
+        command: int,
+        data: bytes,
+        number: int = 0,
+        *,
+        answer: bool = False,
+    ) -> bytes:
+        """A frame with any command and data."""
+        del number
+        return (self.answer_frame if answer else self.request_frame)(station, command, data)
+
+    def encode_refusal(self, station: int, command: int, code: int, number: int = 0) -> bytes:
+        """The frame in which a PLC refuses this command."""
+        del number
+        return self.answer_frame(station, command, self.data.notation.digit(code))
+
+    def request_bytes(self, request: Request[A]) -> int:
+        """Length of the frame that asks this, in bytes."""
+        return self.framing_bytes + len(self.data.request_data(request))
+
+    def answer_bytes(self, request: Request[A]) -> int:
+        """Length of the frame that answers this request, in bytes; of 53 that of FACON's 64 bytes."""
+        return self.framing_bytes + self.data.answer_size(request)
+
+    def neighbourhood(self, element: Element, *, writes: bool) -> int:  # noqa: ARG002  # the interface's
+        """All elements have their place."""
+        return 0
+
+    def most(self, symbol: str, *, writes: bool) -> int:  # noqa: ARG002  # the same both ways
+        """How many elements of a kind one run holds."""
+        return run_limit(KINDS[symbol])
+
+    def mixed_words(self, *, writes: bool) -> int:
+        """How many words one mixed request holds."""
+        return MAX_MIXED_WRITE_WORDS if writes else MAX_READ_WORDS
+
+    def shape(self, request: Request[Any]) -> bytes:  # noqa: ARG002  # the interface's
+        """Nothing: a fence is known by its nonce."""
+        return b""
+
+    def fence(self, nonce: bytes, asked: Collection[bytes] | None) -> Request[Any]:  # noqa: ARG002  # the interface's
+        """A loopback (4E) with a nonce."""
+        return Loopback(nonce)
