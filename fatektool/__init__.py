@@ -27,6 +27,7 @@ from typing import TYPE_CHECKING, Any
 from fatektool.version import __version__
 
 if TYPE_CHECKING:
+    from fatektool.address import PlcAddress
     from fatektool.client import Plc
     from fatektool.connection import connect
     from fatektool.errors import FatektoolError
@@ -49,6 +50,7 @@ _HOMES = {
     "FatektoolError": "fatektool.errors",
     "Header": "fatektool.program.headers.header",
     "Plc": "fatektool.client",
+    "PlcAddress": "fatektool.address",
     "Program": "fatektool.program.image",
     "ProgramFile": "fatektool.project.program_file",
     "backup": "fatektool.jobs.programs.backup",
@@ -72,6 +74,7 @@ __all__ = [
     "FatektoolError",
     "Header",
     "Plc",
+    "PlcAddress",
     "Program",
     "ProgramFile",
     "__version__",

@@ -18,8 +18,8 @@ def one_input(data: bytes) -> None:
     for name, entry in found.plcs.items():
         assert NAME.fullmatch(name)
         assert ".." not in Path(f"{name}.json").parts
-        assert 1 <= entry.station <= 254
-        assert entry.timeout_s > 0
+        assert entry.address.station in entry.address.codec.stations
+        assert entry.address.timeout_s > 0
     assert all(fault.line is None or fault.line >= 1 for fault in found.faults)
     try:
         found.require_whole()

@@ -19,6 +19,7 @@ RANKS = {
     "errors": 0,
     "protocols": 0,
     "version": 0,
+    "checks": 1,
     "files": 1,
     "protocol": 1,
     "program": 2,
@@ -30,6 +31,8 @@ RANKS = {
     "planner": 3,
     "exchange": 3,
     "client": 4,
+    "address": 3,
+    "simulated": 4,
     "connection": 5,
     "jobs": 6,
     "history": 6,
@@ -41,7 +44,7 @@ RANKS = {
 }
 """A folder may import from lower ones and from itself."""
 
-TO_THE_SIMULATOR = {"simulator", "connection", "cli"}
+TO_THE_SIMULATOR = {"simulator", "simulated", "cli"}
 PRINTERS = {"click", "rich", "logging"}
 
 

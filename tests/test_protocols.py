@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from fatektool.cli.shared.options import USUAL_FORMATS
-from fatektool.connection import usual_format
+from fatektool.address import DEFAULT_FORMATS, default_format
 from fatektool.protocol.explain import Role
 from fatektool.protocol.fatek.facon.codec import FACON
 from fatektool.protocol.fatek.mseries.codec import MSERIES
@@ -80,11 +79,11 @@ def test_no_number_of_a_trace_is_used_twice() -> None:
 def test_the_help_names_the_format_of_each(name: str) -> None:
     """Of those on serial lines; the slave's lines have the same."""
     if codec_named(name).data_bits is None:
-        assert name not in USUAL_FORMATS
+        assert name not in DEFAULT_FORMATS
         return
-    usual, _, exceptions = USUAL_FORMATS.partition(";")
+    usual, _, exceptions = DEFAULT_FORMATS.partition(";")
     wanted = exceptions.split()[0] if name in exceptions.split() else usual
-    assert usual_format(name) == wanted
+    assert default_format(codec_named(name)) == wanted
     assert SLAVES[name].bits_per_char == {"7E1": 10, "8E1": 11}[wanted]
 
 

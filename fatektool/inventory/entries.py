@@ -10,22 +10,18 @@ from dataclasses import dataclass, field
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
-from fatektool.connection import usual_format
 from fatektool.errors import DataError, UsageError
 from fatektool.files.plain_text import plain_text
 from fatektool.files.portable_name import is_portable_name
 from fatektool.files.strict_toml import read_toml
 from fatektool.inventory.lines import key_lines, line_of
-from fatektool.inventory.values import CHECKS
-from fatektool.protocol.codec import require_station
-from fatektool.protocol.registry import codec_named
-from fatektool.protocols import DEFAULT
-from fatektool.transport.target import Target
+from fatektool.inventory.values import KEYS, KEYS_OF_ONE, address_of, take
 
 if TYPE_CHECKING:
-    from collections.abc import Set as AbstractSet
+    from collections.abc import Sequence
     from pathlib import Path
 
+    from fatektool.address import PlcAddress
     from fatektool.inventory.lines import KeyPath
 
 
@@ -35,37 +31,21 @@ class PlcEntry:
 
     Attributes:
         name: its name.
-        target: as for ``connect``; a path in it is relative to the current folder, or absolute.
-        station: 1 to 254; with ``modbus-tcp`` also 0 and 255.
-        protocol: its protocol.
-        baud: baud rate of the serial line.
-        format: data bits, parity, stop bits; None for the protocol's default.
-        timeout_s: time for the PLC to answer, in seconds, in addition to the wire time.
-        retries: retries per request.
-        lock_wait_s: how long to wait for a port that another process uses, in seconds.
+        address: where it is and how to ask it; a path in it is relative to the current folder, or absolute.
         tags: words for ``--select``.
         spec: the snapshot specification; None if there is none.
         reference: a backup or project with the expected program; None if there is none.
         project: the WinProladder project with the comments of its elements; None if there is none.
         expect: the expected mode: ``run``, ``stop`` or ``any``.
-        read_only: refuse every write to it.
     """
 
     name: str
-    target: str
-    station: int = 1
-    protocol: str = "facon"
-    baud: int = 9600
-    format: str | None = None
-    timeout_s: float = 0.5
-    retries: int = 3
-    lock_wait_s: float = 10.0
+    address: PlcAddress
     tags: tuple[str, ...] = ()
     spec: Path | None = None
     reference: Path | None = None
     project: Path | None = None
     expect: str = "run"
-    read_only: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,7 +137,7 @@ class _TableReader:
             if key not in {"defaults", "plc"}:
                 self._fault("expected [defaults] and [plc.NAME] tables", key, got=key)
         defaults = self._table(
-            document.get("defaults", {}), ("defaults",), CHECKS.keys() - {"reference", "project"}
+            document.get("defaults", {}), ("defaults",), [key for key in KEYS if key not in KEYS_OF_ONE]
         )
         plcs = document.get("plc", {})
         if not isinstance(plcs, dict):
@@ -180,27 +160,22 @@ class _TableReader:
         twin = next((other for other in self._found.plcs if other.lower() == name.lower()), None)
         if twin is not None:
             self._fault(f"{name!r} differs only in case from {twin!r}: expected another name", "plc", name)
-        values = defaults | self._table(table, ("plc", name), CHECKS.keys())
+        values = defaults | self._table(table, ("plc", name), KEYS)
         if "target" not in values and isinstance(table, dict) and "target" not in table:
-            self._fault(f'{name}: target is missing: expected for example target = "tcp://HOST"', "plc", name)
-        protocol = values.get("protocol", DEFAULT)
-        if len(self._found.faults) == faults:
-            try:
-                Target.parse(values["target"], default_port=codec_named(protocol).default_tcp_port)
-            except UsageError as error:
-                self._fault(f"{name}: {error}", "plc", name, "target")
-                return
-            try:
-                require_station(codec_named(protocol), values.get("station", 1))
-            except UsageError as error:
-                self._fault(f"{name}: {error}", "plc", name, "station")
-                return
-            form = values.get("format")
-            if form is None:
-                values["format"] = usual_format(protocol)
-            self._found.plcs[name] = PlcEntry(name, **values)
+            self._fault(
+                f'plc.{name}: target is missing: expected for example target = "tcp://HOST"', "plc", name
+            )
+        if len(self._found.faults) > faults:
+            return
+        try:
+            address = address_of(values)
+        except UsageError as error:
+            key = error.message.partition(" ")[0].rstrip(":")
+            self._fault(f"plc.{name}: {error}", "plc", name, key if key in KEYS else "target")
+            return
+        self._found.plcs[name] = PlcEntry(name, address, **values)
 
-    def _table(self, table: object, path: tuple[str, ...], allowed: AbstractSet[str]) -> dict[str, Any]:
+    def _table(self, table: object, path: tuple[str, ...], allowed: Sequence[str]) -> dict[str, Any]:
         """The valid values of a table."""
         if not isinstance(table, dict):
             self._fault(f"expected a table [{'.'.join(path)}]", *path)
@@ -214,22 +189,14 @@ class _TableReader:
                 )
                 self._fault(f"{'.'.join(path)}: unknown key {key!r}: {known}", *path, key)
                 continue
-            words, take = CHECKS[key]
             try:
-                found[key] = take(value, self._found.file.parent)
-            except (ValueError, TypeError, UsageError) as error:
-                reason = error.message if isinstance(error, UsageError) else f"{key}: expected {words}"
-                got = "" if isinstance(error, UsageError) else f", got {_short(value)}"
-                self._fault(f"{'.'.join(path)}: {reason}{got}", *path, key)
+                found[key] = take(key, value, self._found.file.parent)
+            except ValueError as error:
+                self._fault(f"{'.'.join(path)}: {key}: {error}", *path, key)
+            except UsageError as error:
+                self._fault(f"{'.'.join(path)}: {error}", *path, key)
         return found
 
     def _fault(self, message: str, *path: str, got: str = "") -> None:
         reason = f"{message}, got {got!r}" if got else message
         self._found.faults.append(InventoryFault(line_of(self._lines, *path), reason))
-
-
-def _short(value: object) -> str:
-    try:
-        return f"{value!r:.60}"
-    except (ValueError, RecursionError):  # a whole number of thousands of digits
-        return "a very long number"

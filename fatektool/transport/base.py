@@ -18,7 +18,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from fatektool.errors import UsageError
+from fatektool.checks import OneOf, WholeNumber
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -34,9 +34,22 @@ MOST_SAID: Final = 120
 DRAIN_LIMIT: Final = 1 << 16
 """A line that babbles on is not drained for ever."""
 
-_FORMATS: Final = {
-    f"{bits}{parity}{stop}" for bits in "5678" for parity in "NEOMS" for stop in ("1", "1.5", "2")
-}
+
+class LineFormat(OneOf):
+    """Data bits, parity and stop bits of a serial line, in either case."""
+
+    def __init__(self) -> None:
+        super().__init__(
+            (f"{bits}{parity}{stop}" for bits in "5678" for parity in "NEOMS" for stop in ("1", "1.5", "2")),
+            expected="data bits, parity and stop bits such as 7E1 or 8N1",
+        )
+
+    def _taken(self, value: object) -> str | None:
+        return super()._taken(value.upper()) if isinstance(value, str) else None
+
+
+BAUD: Final = WholeNumber(50, 4_000_000)
+FORMAT: Final = LineFormat()
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,13 +64,8 @@ class LineSettings:
     format: str = "7E1"
 
     def __post_init__(self) -> None:
-        if not 50 <= self.baud <= 4_000_000:
-            raise UsageError(f"baud: expected 50 to 4000000, got {self.baud}")
-        if self.format not in _FORMATS:
-            raise UsageError(
-                f"line format: expected data bits, parity and stop bits such as 7E1 or 8N1, "
-                f"got {self.format!r}"
-            )
+        BAUD.require("baud", self.baud)
+        object.__setattr__(self, "format", FORMAT.require("format", self.format))
 
     @property
     def data_bits(self) -> int:

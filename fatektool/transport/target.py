@@ -79,6 +79,7 @@ class Target:
             return cls._net(text, default_port)
         if text.startswith("modem:"):
             return cls._modem(text)
+        _require_place(text)
         return cls(text, TargetKind.SERIAL, path=text)
 
     @classmethod
@@ -91,6 +92,7 @@ class Target:
                 f"target {text[:80]!r}: expected modem:PORT?number=…",
                 hint="such as modem:/dev/ttyUSB0?number=0228082192",
             )
+        _require_place(path)
         return cls(text, TargetKind.MODEM, path=path, call=Call.parse(query))
 
     @classmethod
@@ -118,6 +120,13 @@ class Target:
     def on_serial_port(self) -> bool:
         """True if bytes go through a serial port of this computer, or what pyserial takes for one."""
         return self.kind in {TargetKind.SERIAL, TargetKind.MODEM}
+
+
+def _require_place(path: str) -> None:
+    if "://" in path:  # pyserial's URLs are known where one is named
+        from fatektool.transport.serial_line.url import require_place
+
+        require_place(path)
 
 
 def _lower_scheme(text: str) -> str:

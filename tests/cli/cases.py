@@ -64,27 +64,39 @@ ERRORS = r"""
 2 status
     no PLC named; give --port, .*FATEKTOOL_PORT
 2 status -p PLC -s 0
-    0 is not in the range 1<=x<=254
+    station: expected 1 to 254, got 0; 0 is broadcast
 2 status -p PLC -s 255
-    255 is not in the range
+    station: expected 1 to 254, got 255; facon has no others
 2 status -p PLC -s x
-    'x' is not a valid integer
+    '--station': expected a whole number from 1 to 254, .*, got 'x'
 2 status -p PLC --baud 49
-    baud: expected 50 to 4000000, got 49
+    '--baud': expected a whole number from 50 to 4000000, got 49
 2 status -p PLC --format 9X3
-    such as 7E1 or 8N1, got '9X3'
+    '--format': expected data bits, parity and stop bits such as 7E1 or 8N1, got '9X3'
 2 status -p PLC --timeout 0
-    0.0 is not in the range
+    '--timeout': expected seconds above 0, up to 86400, got 0
 2 status -p PLC --timeout nan
-    'nan' is no number of seconds
+    '--timeout': expected seconds above 0, up to 86400, got nan
 2 status -p PLC --lock-wait nan
-    'nan' is no number of seconds
+    '--lock-wait': expected seconds from 0 to 86400, got nan
 2 status -p PLC --lock-wait inf
-    inf is not in the range
+    expected seconds from 0 to 86400, got inf
 2 status -p PLC --retries -1
-    -1 is not in the range
+    '--retries': expected a whole number from 0 to 1000, got -1
 2 status -p PLC --protocol x
-    'x' is not .*facon
+    '--protocol': expected one of facon, .*, got 'x'
+2 status -p socket://127.0.0.1
+    socket://127.0.0.1: expected socket://HOST:PORT
+2 status -p rfc2217://127.0.0.1:no
+    expected rfc2217://HOST:PORT
+2 status -p spy://
+    expected spy://PORT
+2 status -p hwgrep://(
+    invalid search
+2 status -p loop://?x
+    invalid options
+2 read R0 -p /dev/ttyS0 --protocol modbus-tcp
+    protocol modbus-tcp is for networks
 2 status -p tcp://
     expected tcp://host:port
 2 status -p PLC --trace x.txt
@@ -126,7 +138,7 @@ ERRORS = r"""
 2 stop -p PLC -s 0 --broadcast
     add --yes
 2 stop -p PLC -s 0 --yes
-    0 is every PLC on the line, and none answers: add --broadcast
+    0 is broadcast, to which no PLC replies: add --broadcast
 2 stop -p PLC --broadcast --yes
     expected station 0, got 1; add -s 0
 2 status -p PLC -s 0 --broadcast
@@ -160,9 +172,9 @@ ERRORS = r"""
 2 scan -p PLC --bauds 9600,19200
     no speed and format to try
 2 scan -p PLC --bauds 10
-    baud: expected 50 to 4000000, got 10
+    expected a whole number from 50 to 4000000, got 10
 2 scan -p PLC --protocols nope
-    'nope' is not
+    '--protocols': expected one of facon, .*, got 'nope'
 3 loopback -p /dev/nope
     /dev/nope: no such port
 3 scan -p /dev/nope

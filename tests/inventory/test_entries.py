@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from fatektool.address import PlcAddress
 from fatektool.errors import DataError, UsageError
 from fatektool.inventory.entries import Inventory, PlcEntry, parse_inventory
 from fatektool.inventory.select import select
@@ -43,11 +44,7 @@ def test_a_whole_entry() -> None:
     assert list(found.plcs.values()) == [
         PlcEntry(
             "press",
-            "tcp://192.168.2.3",
-            7,
-            "facon",
-            format="7E1",
-            timeout_s=2.0,
+            PlcAddress("tcp://192.168.2.3", 7, "facon", timeout_s=2.0),
             tags=("hall-1", "night"),
             spec=FOLDER / "specs/press.toml",
             reference=Path("/srv/press.json"),
@@ -55,12 +52,7 @@ def test_a_whole_entry() -> None:
         ),
         PlcEntry(
             "oven",
-            "/dev/ttyUSB0",
-            protocol="mseries",
-            baud=19200,
-            format="8E1",
-            timeout_s=2.0,
-            retries=0,
+            PlcAddress("/dev/ttyUSB0", protocol="mseries", baud=19200, timeout_s=2.0, retries=0),
             tags=("all",),
         ),
     ]
@@ -80,21 +72,21 @@ def test_a_whole_entry() -> None:
     ],
 )
 def test_paths_are_relative_to_the_file(target: str, found: str) -> None:
-    assert parsed(f'[plc.p]\ntarget = "{target}"').plcs["p"].target == found
+    assert parsed(f'[plc.p]\ntarget = "{target}"').plcs["p"].address.target == found
 
 
 FAULTS = [
     ('[plc.p]\ntarget = "sim:"\nstatoin = 3', "line 3: plc.p: unknown key 'statoin': did you mean station?"),
     ('[plc.p]\ntarget = "sim:"\nx = 3', "line 3: plc.p: unknown key 'x': expected one of baud, expect"),
-    ('[plc.p]\ntarget = "sim:"\nstation = 0', "line 3: p: station: expected 1 to 254, got 0; 0 is broadc"),
+    ('[plc.p]\ntarget = "sim:"\nstation = 0', "line 3: plc.p: station: expected 1 to 254, got 0; 0 is broad"),
     (
         '[plc.p]\ntarget = "tcp://h"\nprotocol = "modbus-tcp"\nstation = 256',
-        "line 4: plc.p: station: expected a whole number of 1 .*got 256",
+        "line 4: plc.p: station: expected a whole number from 1 to 254, .*, got 256",
     ),
     ('[plc.p]\ntarget = "sim:"\nstation = true', "line 3: .*got True"),
-    ('[plc.p]\ntarget = "sim:"\ntimeout_s = nan', "line 3: plc.p: timeout_s: expected seconds, 0.001"),
+    ('[plc.p]\ntarget = "sim:"\ntimeout_s = nan', "line 3: plc.p: timeout_s: expected seconds above 0"),
     ('[plc.p]\ntarget = "sim:"\ntimeout_s = true', "line 3: .*got True"),
-    ('[plc.p]\ntarget = "sim:"\nformat = "9X1"', "line 3: plc.p: line format: expected data bits.*got '9X1'"),
+    ('[plc.p]\ntarget = "sim:"\nformat = "9X1"', "line 3: plc.p: format: expected data bits.*got '9X1'"),
     ('[plc.p]\ntarget = "sim:"\nprotocol = "s7"', "line 3: plc.p: protocol: expected one of facon, "),
     ('[plc.p]\ntarget = "sim:"\ntags = ["a", 3]', "line 3: plc.p: tags: expected a list of strings"),
     ('[plc.p]\ntarget = "sim:"\nread_only = 1', "line 3: plc.p: read_only: expected true or false, got 1"),
@@ -102,9 +94,18 @@ FAULTS = [
     ('[plc.p]\ntarget = "sim:"\nspec = ""', "line 3: plc.p: spec: expected the name of a file, got ''"),
     ('[plc.p]\ntarget = "sim:"\nretries = ' + "9" * 5000, "not valid TOML: Exceeds the limit"),
     ('[plc.p]\ntarget = "sim:"\nretries = ' + "9" * 4000, "line 3: plc.p: retries: .*got 9999"),
-    ("[plc.p]\nstation = 2", 'line 1: p: target is missing: expected for example target = "tcp://HOST"'),
+    ("[plc.p]\nstation = 2", 'line 1: plc.p: target is missing: expected for example target = "tcp://HOST"'),
     ('[plc.p]\ntarget = "tcp://"', "line 2: plc.p: target 'tcp://': expected tcp://host:port"),
-    ('[plc.p]\ntarget = "tcp://h"\nprotocol = "mseries"', "line 2: p: target 'tcp://h': expected a port"),
+    ('[plc.p]\ntarget = "tcp://h"\nprotocol = "mseries"', "line 2: plc.p: target 'tcp://h': expected a port"),
+    ('[plc.p]\ntarget = "rfc2217://h"', "line 2: plc.p: rfc2217://h: expected rfc2217://HOST:PORT"),
+    (
+        '[plc.p]\ntarget = "COM3"\nprotocol = "modbus-tcp"',
+        "line 3: plc.p: protocol modbus-tcp is for networks: expected tcp://HOST, got 'COM3'",
+    ),
+    (
+        '[plc.p]\ntarget = "COM3"\nprotocol = "mseries"\nformat = "7e1"',
+        "line 4: plc.p: format: expected 8 data bits, as mseries on a serial line needs, got 7E1",
+    ),
     ("[plc.p]\ntarget = 3", "line 2: plc.p: target: expected a string such as"),
     ('[plc.COM3]\ntarget = "sim:"', "line 1: name of a PLC: expected up to 64 letters.*got 'COM3'"),
     ('[plc."a/b"]\ntarget = "sim:"', "line 1: name of a PLC: .*got 'a/b'"),

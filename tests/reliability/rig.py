@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fatektool.address import default_format
 from fatektool.client import Plc
-from fatektool.connection import usual_format
 from fatektool.exchange.link import Link
 from fatektool.protocol.elements import Element
 from fatektool.protocol.registry import codec_named
@@ -78,8 +78,8 @@ class Rig:
         for device in self.simulation.plcs.values():
             fill(device)
         self.transport = MemoryTransport(self.simulation.line(), "rig")
-        self.line = LineSettings(format=usual_format(protocol))
         self.codec = codec_named(protocol)
+        self.line = LineSettings(format=default_format(self.codec))
         nonces = (b"%08X" % number for number in range(1 << 32))
         self.link = Link(
             self.transport, self.codec, 1, self.line, retries=retries, nonces=lambda: next(nonces)

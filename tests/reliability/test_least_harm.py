@@ -330,7 +330,7 @@ def test_a_broadcast_over_a_read_only_line(two: str, cli: Cli) -> None:
 def test_what_needs_an_answer_has_no_broadcast(press: Press, cli: Cli, line: str) -> None:
     done = cli(*line.split(), "-p", press.target, "-s", 0)
     assert done.code in {2, 3}  # 3 is what a monitoring plugin says of a wrong command line
-    assert "0 is not in the range 1<=x<=254" in done.err + done.out
+    assert "station: expected 1 to 254, got 0" in done.err + done.out
 
 
 def test_the_frames_of_a_broadcast_have_their_time() -> None:

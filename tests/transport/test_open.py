@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import socket
 from contextlib import ExitStack
 from typing import TYPE_CHECKING
@@ -105,23 +106,41 @@ def test_no_right_to_the_port(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "target",
     [
-        "socket://127.0.0.1",
-        "socket://",
-        "rfc2217://",
-        "spy://",
         "spy:///nowhere",
-        "loop://?no=such",
-        "socket://127.0.0.1:1?logging=all",
         "hwgrep://no-such-adapter",
-        "hwgrep://(",
     ],
 )
-def test_an_url_that_pyserial_does_not_know(target: str) -> None:
+def test_an_url_of_a_port_that_is_not_there(target: str) -> None:
     assert refusal(target).message.startswith(target)
 
 
+@pytest.mark.parametrize(
+    ("target", "words"),
+    [
+        ("socket://127.0.0.1", "expected socket://HOST:PORT"),
+        ("socket://127.0.0.1:99999", "expected socket://HOST:PORT"),
+        ("socket://:4001", "expected socket://HOST:PORT"),
+        ("socket://", "expected socket://HOST:PORT"),
+        ("Rfc2217://", "expected rfc2217://HOST:PORT"),
+        ("modem:socket://gateway?number=1", "expected socket://HOST:PORT"),
+        ("spy://", "expected spy://PORT"),
+        ("alt://?class=Serial", "expected alt://PORT"),
+        ("hwgrep://", "expected a text to search for"),
+        ("hwgrep://(", "invalid search: "),
+        ("hwgrep://x&y=1", "invalid search: unknown option: 'y'"),
+        ("loop://?no=such", "invalid options: unknown option or value"),
+        ("loop://?logging=all", "invalid options: unknown option or value"),
+        ("socket://127.0.0.1:1?logging=all", "invalid options: unknown option or value"),
+        ("rfc2217://127.0.0.1:1?x", "invalid options: unknown option: 'x'"),
+    ],
+)
+def test_a_wrong_url_is_no_fault_of_the_line(target: str, words: str) -> None:
+    with ExitStack() as stack, pytest.raises(UsageError, match=re.escape(words)) as caught:
+        opened(target, stack)
+    assert caught.value.hint
+
+
 def test_a_scheme_that_nobody_knows() -> None:
-    """A slip of the pen is no fault of the line."""
     with ExitStack() as stack, pytest.raises(UsageError, match="no such kind of target") as caught:
         opened("tpc://192.168.2.3", stack)
     assert "tcp://" in str(caught.value.hint)

@@ -13,8 +13,9 @@ from fatektool.cli.elements.documents import discrete_document
 from fatektool.cli.elements.values import warn_of
 from fatektool.cli.shared.addressee import look
 from fatektool.cli.shared.broadcast import broadcast_option, means_all, send_to_all
+from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.modbus_map import modbus_map_option
-from fatektool.cli.shared.options import Connection, connection_options, yes_option
+from fatektool.cli.shared.options import yes_option
 from fatektool.errors import PlcError
 from fatektool.jobs.elements.discretes import SWITCHES, control_discretes, parse_discretes, read_discretes
 from fatektool.protocol.commands import Command, Control, ControlDiscrete
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from fatektool.cli.shared.addressee import Addressee
+    from fatektool.cli.shared.connection import Connection
     from fatektool.cli.shared.output import Voice
     from fatektool.client import Plc
     from fatektool.jobs.elements.discretes import DiscreteState, DiscreteStates

@@ -9,8 +9,8 @@ import click
 from fatektool.cli.elements.documents import read_document
 from fatektool.cli.elements.values import SELECTION, value_lines, warn_of
 from fatektool.cli.programs.program_files import comments_for, comments_options
+from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.modbus_map import modbus_map_option
-from fatektool.cli.shared.options import Connection, connection_options
 from fatektool.errors import PlcError
 from fatektool.jobs.elements.items import comments_of, read_items
 from fatektool.jobs.elements.selection import parse_items
@@ -18,6 +18,7 @@ from fatektool.jobs.elements.selection import parse_items
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from fatektool.cli.shared.connection import Connection
     from fatektool.cli.shared.output import Voice
 
 

@@ -14,9 +14,10 @@ from fatektool.cli.elements.documents import watch_document
 from fatektool.cli.elements.selection import selected, spec_options
 from fatektool.cli.elements.values import SELECTION, shown
 from fatektool.cli.programs.program_files import comments_for, comments_options
+from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.documents import error_document
 from fatektool.cli.shared.modbus_map import modbus_map_option
-from fatektool.cli.shared.options import Connection, Seconds, connection_options
+from fatektool.cli.shared.options import Seconds
 from fatektool.cli.shared.output import tell
 from fatektool.cli.shared.report import report_option, watch_report
 from fatektool.cli.shared.streams import reader_is_gone
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from pathlib import Path
 
+    from fatektool.cli.shared.connection import Connection
     from fatektool.cli.shared.output import Voice
     from fatektool.client import Plc
     from fatektool.jobs.snapshots.spec import SpecItem

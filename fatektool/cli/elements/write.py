@@ -10,16 +10,17 @@ from fatektool.cli.elements.documents import write_document
 from fatektool.cli.elements.values import shown, warn_of
 from fatektool.cli.shared.addressee import look
 from fatektool.cli.shared.broadcast import broadcast_option, means_all, send_to_all
+from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.modbus_map import modbus_map_option
-from fatektool.cli.shared.options import Connection, connection_options, yes_option
+from fatektool.cli.shared.options import yes_option
 from fatektool.errors import LineError, PlcBusy, PlcError
 from fatektool.jobs.elements.assignment import parse_assignments
 from fatektool.jobs.elements.items import value_of
 from fatektool.jobs.elements.writes import write_elements
 from fatektool.planner import plan_writes
-from fatektool.protocol.registry import codec_named
 
 if TYPE_CHECKING:
+    from fatektool.cli.shared.connection import Connection
     from fatektool.cli.shared.output import Voice
     from fatektool.jobs.elements.selection import Item
     from fatektool.jobs.elements.writes import NotTaken
@@ -45,7 +46,7 @@ def write_command(
     """
     pairs = parse_assignments(assignments)
     if means_all(connection, broadcast=broadcast):
-        requests = plan_writes([(item.element, raw) for item, raw in pairs], codec_named(connection.protocol))
+        requests = plan_writes([(item.element, raw) for item, raw in pairs], connection.address.codec)
         send_to_all(connection, voice, "write", requests, yes=yes)
         return 0
     items = {item.element: item for item, _ in pairs}

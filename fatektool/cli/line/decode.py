@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fatektool.cli.line.frame_view import explanation_document, field_lines
-from fatektool.cli.shared.options import voice_options
+from fatektool.cli.shared.options import OneOf, voice_options
 from fatektool.cli.shared.pairs import together
 from fatektool.errors import DataError, UsageError
 from fatektool.files.atomic import read_bounded
@@ -35,7 +35,7 @@ _ROLES = {"request": Role.REQUEST, "answer": Role.ANSWER}
 @click.argument("frames", nargs=-1, required=True, metavar="HEX…|FILE")
 @click.option(
     "--protocol",
-    type=click.Choice(list(PROTOCOLS)),
+    type=OneOf(PROTOCOLS),
     help="Of the frames.  [default: what the trace tells, or facon]",
 )
 @click.option("--as", "role", type=click.Choice(list(_ROLES)), help="What the frames given as hex are.")

@@ -8,13 +8,14 @@ import click
 
 from fatektool.cli.line.documents import doctor_document
 from fatektool.cli.line.loopback_view import findings
-from fatektool.cli.shared.options import Connection, connection_options
+from fatektool.cli.shared.connection_options import connection_options
 from fatektool.jobs.linetest.doctor import examine
 from fatektool.protocol.commands import Command
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from fatektool.cli.shared.connection import Connection
     from fatektool.cli.shared.output import Voice
 
 

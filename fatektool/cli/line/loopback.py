@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import TYPE_CHECKING
 
 import click
@@ -9,7 +10,8 @@ import click
 from fatektool.cli import INTERRUPTED
 from fatektool.cli.line.documents import loopback_document
 from fatektool.cli.line.loopback_view import LiveFigures, lines
-from fatektool.cli.shared.options import Connection, Seconds, Several, connection_options
+from fatektool.cli.shared.connection_options import connection_options
+from fatektool.cli.shared.options import Seconds, Several
 from fatektool.cli.shared.pairs import apart, together
 from fatektool.cli.shared.report import report_option, write_report
 from fatektool.jobs.linetest.diagnosis import diagnose
@@ -23,6 +25,7 @@ from fatektool.protocol.commands import Command
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from fatektool.cli.shared.connection import Connection
     from fatektool.cli.shared.output import Voice
 
 
@@ -31,7 +34,7 @@ if TYPE_CHECKING:
     epilog="Example: fatektool loopback --duration 3600 --max-error-rate 0.001 --json -p /dev/ttyUSB0",
 )
 @click.option("--count", type=click.IntRange(1), help=f"So many exchanges.  [default: {DEFAULT_COUNT}]")
-@click.option("--duration", type=Seconds(0, min_open=True), metavar="S", help="So many seconds instead.")
+@click.option("--duration", type=Seconds(0, inf, above=True), metavar="S", help="So many seconds instead.")
 @click.option(
     "--sizes",
     type=Several(click.IntRange(0, MAX_FRAME)),

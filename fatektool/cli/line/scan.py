@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from fatektool.address import default_format
 from fatektool.cli import INTERRUPTED
 from fatektool.cli.line.documents import scan_document, station_document
 from fatektool.cli.line.network import look_for_modules, network_option
-from fatektool.cli.shared.options import Connection, Several, connection_options
+from fatektool.cli.shared.connection_options import connection_options
+from fatektool.cli.shared.options import OneOf, Several, type_of
 from fatektool.cli.shared.pairs import apart, together
 from fatektool.errors import UsageError
 from fatektool.exchange.no_answer import longer_timeout
@@ -19,11 +21,13 @@ from fatektool.jobs.linetest.scan import scan
 from fatektool.jobs.linetest.scan_result import ScanResult, Setting
 from fatektool.protocol.line_settings import BAUDS, FORMATS
 from fatektool.protocols import PROTOCOLS
-from fatektool.transport.base import LineSettings
+from fatektool.transport.base import BAUD, FORMAT, LineSettings
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from fatektool.address import PlcAddress
+    from fatektool.cli.shared.connection import Connection
     from fatektool.cli.shared.output import Voice
     from fatektool.jobs.linetest.scan_result import Station
 
@@ -77,19 +81,19 @@ class Bauds(Several):
 )
 @click.option(
     "--bauds",
-    type=Bauds(click.INT),
+    type=Bauds(type_of(BAUD)),
     metavar="N,…",
     help="Speeds to try; 'all' for those that FATEK has.  [default: that of --baud]",
 )
 @click.option(
     "--formats",
-    type=Several(click.STRING),
+    type=Several(type_of(FORMAT)),
     metavar="F,…",
     help="Formats to try.  [default: that of --format]",
 )
 @click.option(
     "--protocols",
-    type=Several(click.Choice(list(PROTOCOLS))),
+    type=Several(OneOf(PROTOCOLS)),
     metavar="P,…",
     help="Protocols to try.  [default: that of --protocol]",
 )
@@ -116,12 +120,12 @@ def scan_command(
     apart("network", "bauds", "baud", "formats", "line_format", "protocols", "protocol")
     apart("network", "trace", "retries", "lock_wait")
     if network is not None:
-        return look_for_modules(voice, network, connection.timeout_s)
+        return look_for_modules(voice, network, connection.address.timeout_s)
     together("station", holds=False, needs="one PLC; a scan asks those of --stations")
     apart("baud", "bauds")
     apart("line_format", "formats")
     apart("protocol", "protocols")
-    settings = _settings(connection, bauds, formats, protocols)
+    settings = _settings(connection.address, bauds, formats, protocols)
     for station in _UNITS.intersection(stations):
         if not any(station in setting.codec.stations for setting in settings):
             raise UsageError(
@@ -132,20 +136,20 @@ def scan_command(
         serial = transport.line is not None
         networks = [setting.codec.name for setting in settings if setting.codec.data_bits is None]
         if serial and networks:
-            raise UsageError(f"{networks[0]} is for networks: {connection.target} is a serial line")
+            raise UsageError(f"{networks[0]} is for networks: {connection.address.target} is a serial line")
         if not serial and len({setting.line.baud for setting in settings}) > 1:
             raise UsageError(
-                f"{connection.target} has no speed and format to try: expected a serial port",
+                f"{connection.address.target} has no speed and format to try: expected a serial port",
                 hint="set them at the gateway",
             )
-        head = {"time": utc(), "target": connection.target}
+        head = {"time": utc(), "target": connection.address.target}
         bar = stack.enter_context(voice.progress("probes"))
         result = scan(
             transport,
             settings,
             stations,
-            timeout_s=connection.timeout_s,
-            retries=connection.retries,
+            timeout_s=connection.address.timeout_s,
+            retries=connection.address.retries,
             on_found=lambda found: None if voice.json else bar.print(_line(found, serial=serial)),
             on_probe=lambda done, total: bar.update("scan", done, total),
         )
@@ -158,7 +162,7 @@ def scan_command(
 
 
 def _settings(
-    connection: Connection,
+    address: PlcAddress,
     bauds: tuple[int, ...] | None,
     formats: tuple[str, ...] | None,
     protocols: tuple[str, ...] | None,
@@ -168,26 +172,18 @@ def _settings(
     Raises:
         UsageError: a protocol for which no format has bits enough.
     """
-    from fatektool.connection import usual_format
-    from fatektool.protocol.registry import codec_named
-
     found: dict[Setting, None] = {}
-    for name in protocols or (connection.protocol,):
-        codec = codec_named(name)
-        own = connection.format if name == connection.protocol else usual_format(name)
-        lines = [
-            LineSettings(baud, form.upper())
-            for baud in bauds or (connection.baud,)
-            for form in formats or (own,)
-        ]
+    for name in protocols or (address.protocol,):
+        own = address.changed(protocol=name)
+        codec, tried = own.codec, formats or (own.line.format,)
+        lines = [LineSettings(baud, form) for baud in bauds or (own.baud,) for form in tried]
         carrying = [line for line in lines if line.data_bits >= (codec.data_bits or 0)]
         if not carrying:
-            tried = ", ".join(formats or (own,))
             raise UsageError(
-                f"{name} needs {codec.data_bits} data bits, which no format of {tried} has",
-                hint=f"add {usual_format(name)} to --formats",
+                f"{name} needs {codec.data_bits} data bits, which no format of {', '.join(tried)} has",
+                hint=f"add {default_format(codec)} to --formats",
             )
-        factory = LineSettings(format=usual_format(name))
+        factory = LineSettings(format=default_format(codec))
         found |= {Setting(codec, line): None for line in sorted(carrying, key=lambda line: line != factory)}
     return list(found)
 

@@ -11,7 +11,8 @@ from fatektool.cli.many.alarms import Alarms, alarm_options
 from fatektool.cli.many.outcome import Outcome
 from fatektool.cli.many.plugin import PluginCommand, plugin_line
 from fatektool.cli.many.run_check import check_result, found_document, run_check
-from fatektool.cli.shared.options import PATH, Connection, Seconds, connection_options
+from fatektool.cli.shared.connection_options import connection_options
+from fatektool.cli.shared.options import PATH, Seconds
 from fatektool.cli.shared.pairs import apart, together
 from fatektool.errors import UsageError
 from fatektool.inventory.values import EXPECTATIONS
@@ -23,6 +24,7 @@ from fatektool.transport.limit import Limit
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from fatektool.cli.shared.connection import Connection
     from fatektool.cli.shared.output import Voice
 
 
@@ -47,7 +49,7 @@ if TYPE_CHECKING:
 @click.option("--max-age", metavar="AGE", help="How old that may be: 36h, 7d.")
 @click.option(
     "--deadline",
-    type=Seconds(0, 86400, min_open=True),
+    type=Seconds(0, 86400, above=True),
     default=600.0,
     show_default=True,
     metavar="S",
@@ -86,11 +88,13 @@ def check_command(
         None if max_age is None else parse_age(max_age),
     )
     together("on_change", holds=plan.reference is not None, needs="a reference, with which to compare")
-    name = connection.target if entry is None else entry.name
+    name = connection.address.target if entry is None else entry.name
     began = time.monotonic()
     found = run_check(connection, plan, voice, limit=Limit(deadline))
     result = check_result(connection, name, plan, found)
-    outcome = Outcome(name, connection.target, connection.station, time.monotonic() - began, result)
+    outcome = Outcome(
+        name, connection.address.target, connection.address.station, time.monotonic() - began, result
+    )
     alarms.notify("check", outcome, voice)
     alarms.write({name}, voice)
     if alarms.lost is not None:

@@ -13,7 +13,7 @@ from fatektool.jobs.check.plc import check_plc
 from fatektool.jobs.progress import Progress, no_progress
 
 if TYPE_CHECKING:
-    from fatektool.cli.shared.options import Connection
+    from fatektool.cli.shared.connection import Connection
     from fatektool.cli.shared.output import Voice
     from fatektool.jobs.check.plc import CheckPlan
     from fatektool.jobs.check.result import CheckResult
@@ -42,7 +42,7 @@ def run_check(
     """
 
     def unfinished_since() -> str | None:
-        record = unfinished_document(connection.target, connection.station)
+        record = unfinished_document(connection.address.target, connection.address.station)
         return None if record is None else record["time"]
 
     return check_plc(
@@ -74,7 +74,7 @@ def found_document(connection: Connection, name: str, found: CheckResult) -> dic
         found.words,
         found,
         name=name,
-        target=connection.target,
-        station=connection.station,
-        protocol=connection.protocol,
+        target=connection.address.target,
+        station=connection.address.station,
+        protocol=connection.address.protocol,
     )

@@ -10,11 +10,13 @@ import click
 from fatektool.cli.plc.documents import mode_document
 from fatektool.cli.shared.addressee import agree, with_status
 from fatektool.cli.shared.broadcast import broadcast_option, means_all, send_to_all
-from fatektool.cli.shared.options import Connection, connection_options, yes_option
+from fatektool.cli.shared.connection_options import connection_options
+from fatektool.cli.shared.options import yes_option
 from fatektool.errors import PlcError, PlcRefused
 from fatektool.protocol.commands import Command, RunStop
 
 if TYPE_CHECKING:
+    from fatektool.cli.shared.connection import Connection
     from fatektool.cli.shared.output import Voice
 
 

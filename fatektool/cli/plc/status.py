@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from fatektool.cli.plc.documents import status_document
-from fatektool.cli.shared.options import Connection, connection_options
+from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.output import Voice, table
 from fatektool.jobs.status import StatusReport, read_status
 from fatektool.protocol.commands import Command
@@ -15,6 +15,7 @@ from fatektool.protocol.commands import Command
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from fatektool.cli.shared.connection import Connection
     from fatektool.protocol.status import System
 
 

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from fatektool.cli.programs.documents import saved_document
 from fatektool.cli.programs.raw_file import require_raw_name
-from fatektool.cli.shared.file_path import is_standard
+from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.image_words import warn_of_image
-from fatektool.cli.shared.options import PATH, Connection, connection_options
+from fatektool.cli.shared.options import PATH, is_standard
 from fatektool.cli.shared.output import Voice, table
 from fatektool.cli.shared.pairs import together
 from fatektool.cli.shared.streams import print_bytes
@@ -20,6 +21,9 @@ from fatektool.files.times import stamp, utc
 from fatektool.jobs.programs.backup import read_backup
 from fatektool.program.archive import Backup, save_backup
 from fatektool.protocol.commands import Command
+
+if TYPE_CHECKING:
+    from fatektool.cli.shared.connection import Connection
 
 
 @click.command("backup", epilog="Example: fatektool backup press.json -p /dev/ttyUSB0 -s 3")
@@ -44,7 +48,7 @@ def backup_command(
     Everything is read twice and compared, the header is checked, and FILE is written whole or not at all.
     Without FILE the name is made of station and time; - is standard output. The PLC may run.
     """
-    path = file or Path(f"fatek-st{connection.station:02}-{stamp(utc())}.json")
+    path = file or Path(f"fatek-st{connection.address.station:02}-{stamp(utc())}.json")
     together("force", holds=not is_standard(path) or raw is not None, needs="a file")
     require_raw_name(raw, path)
     for place in (path, raw):

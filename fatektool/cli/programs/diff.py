@@ -13,8 +13,7 @@ from fatektool.cli.programs.program_files import (
     program_file,
     require_comments,
 )
-from fatektool.cli.shared.file_path import is_standard
-from fatektool.cli.shared.options import PATH, voice_options
+from fatektool.cli.shared.options import PATH, is_standard, voice_options
 from fatektool.cli.shared.report import report_option
 from fatektool.errors import UsageError
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from pathlib import Path
 
-    from fatektool.cli.shared.options import Connection
+    from fatektool.cli.shared.connection import Connection
     from fatektool.cli.shared.output import Voice
     from fatektool.inventory.entries import PlcEntry
     from fatektool.program.archive import Backup
@@ -135,7 +135,11 @@ def _project_of(backup: Backup, inventory: Path | None, voice: Voice) -> Path | 
         voice.warn(f"no comments: {error.message}")
         return None
     came_from = backup.source.target, backup.source.station
-    found = {entry.project for entry in plcs if (entry.target, entry.station) == came_from and entry.project}
+    found = {
+        entry.project
+        for entry in plcs
+        if (entry.address.target, entry.address.station) == came_from and entry.project
+    }
     return found.pop() if len(found) == 1 else None
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING
 
-from fatektool.cli.shared.file_path import is_standard
+from fatektool.cli.shared.options import is_standard
 from fatektool.errors import UsageError
 
 if TYPE_CHECKING:

@@ -11,9 +11,10 @@ from click.core import ParameterSource
 
 from fatektool.cli.programs.documents import restore_document
 from fatektool.cli.shared.addressee import Addressee, Origin, Pace, agree, spent
+from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.image_words import warn_of_image
 from fatektool.cli.shared.incomplete import restore_lines
-from fatektool.cli.shared.options import PATH, Connection, connection_options, yes_option
+from fatektool.cli.shared.options import PATH, yes_option
 from fatektool.cli.shared.output import Bar, Voice, table
 from fatektool.cli.shared.pairs import apart
 from fatektool.cli.shared.places import safety_folder
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+    from fatektool.cli.shared.connection import Connection
     from fatektool.client import Plc
 
 
@@ -281,6 +283,6 @@ def _go_on(connection: Connection, *places: Path | None) -> str:
     words = [whole.get(word, word) for word in context.find_root().obj if word != "--changed-only"]
     at = words.index("restore") + 1
     if context.get_parameter_source("port") is ParameterSource.ENVIRONMENT:
-        words[at:at] = ["-p", connection.target]
+        words[at:at] = ["-p", connection.address.target]
     words[at:at] = ["--changed-only"]
     return shlex.join(["fatektool", *words])

@@ -9,7 +9,8 @@ import click
 from fatektool.cli.programs.differences import program_lines
 from fatektool.cli.programs.documents import verify_document
 from fatektool.cli.programs.program_files import comments_for, comments_options, program_file
-from fatektool.cli.shared.options import PATH, Connection, connection_options
+from fatektool.cli.shared.connection_options import connection_options
+from fatektool.cli.shared.options import PATH
 from fatektool.cli.shared.report import report_option, write_report
 from fatektool.cli.shared.unfinished import forget, warn_of_unfinished
 from fatektool.jobs.programs.verify import compare_with_plc
@@ -18,6 +19,7 @@ from fatektool.protocol.commands import Command
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from fatektool.cli.shared.connection import Connection
     from fatektool.cli.shared.output import Voice
 
 
@@ -48,9 +50,9 @@ def verify_command(
         document = verify_document(plc, result, texts)
     found = result.found
     if found.same:
-        forget(connection.target, connection.station, voice)
+        forget(connection.address.target, connection.address.station, voice)
     else:
-        warn_of_unfinished(connection.target, connection.station, voice)
+        warn_of_unfinished(connection.address.target, connection.address.station, voice)
     count = len(found.a.pages)
     same = f"same: the PLC's program is the one in {file}, {count} pages"
     if found.pages.b_has_more:

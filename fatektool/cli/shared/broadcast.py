@@ -13,7 +13,7 @@ from fatektool.errors import UsageError
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from fatektool.cli.shared.options import Connection
+    from fatektool.cli.shared.connection import Connection
     from fatektool.cli.shared.output import Voice
     from fatektool.protocol.commands import Request
 
@@ -35,9 +35,9 @@ def means_all(connection: Connection, *, broadcast: bool) -> bool:
     Raises:
         UsageError: the option without the station.
     """
-    if broadcast and connection.station != 0:
+    if broadcast and connection.address.station != 0:
         raise UsageError(
-            f"--broadcast is for every PLC on the line: expected station 0, got {connection.station}",
+            f"--broadcast is for every PLC on the line: expected station 0, got {connection.address.station}",
             hint="add -s 0, or leave out --broadcast",
         )
     return broadcast
@@ -59,9 +59,9 @@ def send_to_all(
         UsageError: not agreed to, or the line is read-only; nothing was sent.
         LineError: the line is not there or failed; some of them may be sent.
     """
-    line = replace(connection, station=1)  # a line is opened with a station; which one does not matter
-    with line.open(voice, writes=True) as plc:
-        question = f"'{command}' goes to every PLC on {connection.target}, and none answers. Send?"
+    any_station = connection.address.changed(station=1)  # a line is opened with one; which does not matter
+    with replace(connection, address=any_station).open(voice, writes=True) as plc:
+        question = f"'{command}' goes to every PLC on {connection.address.target}, and none answers. Send?"
         if not voice.confirm(question, yes=yes):
             raise UsageError("not agreed to: nothing was sent")
         for request in requests:

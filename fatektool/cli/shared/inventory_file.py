@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from fatektool.cli.shared.file_path import FilePath
+from fatektool.cli.shared.options import PATH
 from fatektool.errors import FatektoolError
 from fatektool.inventory.find import FILE_NAME, find_inventory, may_be_name, no_inventory
 
@@ -23,7 +23,7 @@ F = TypeVar("F", bound="Callable[..., Any]")
 
 inventory_option = click.option(
     "--inventory",
-    type=FilePath(),
+    type=PATH,
     envvar="FATEKTOOL_INVENTORY",
     metavar="FILE.toml",
     help=f"The file with the names of PLCs.  [default: ./{FILE_NAME}, then your configuration folder]  "
@@ -101,7 +101,7 @@ def complete_names(named: Path | None, incomplete: str) -> list[CompletionItem]:
         return []
     plcs = () if found is None else found.plcs.values()
     return [
-        CompletionItem(entry.name, help=f"{entry.target}, station {entry.station}")
+        CompletionItem(entry.name, help=f"{entry.address.target}, station {entry.address.station}")
         for entry in plcs
         if entry.name.startswith(incomplete)
     ]

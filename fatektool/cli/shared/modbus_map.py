@@ -13,7 +13,7 @@ from fatektool.errors import UsageError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fatektool.cli.shared.options import Connection
+    from fatektool.cli.shared.connection import Connection
     from fatektool.protocol.modbus.map import ModbusMap
 
 F = TypeVar("F", bound="Callable[..., Any]")
@@ -35,7 +35,7 @@ def modbus_map_option(function: F) -> F:
         if modbus_map is not None:
             chosen: ModbusMap | Literal["custom"]
             chosen = "custom" if modbus_map == "custom" else read_map(modbus_map)
-            connection = replace(connection, modbus_map=chosen)
+            connection = replace(connection, address=connection.address.changed(modbus_map=chosen))
         return function(*args, connection=connection, **rest)
 
     return with_map  # type: ignore[return-value]  # click's decorators hand back what they get

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fatektool.cli.shared.addressee import Addressee
-    from fatektool.cli.shared.options import Connection
+    from fatektool.cli.shared.connection import Connection
     from fatektool.cli.shared.output import Voice
     from fatektool.jobs.elements.writes import NotTaken
     from fatektool.jobs.snapshots.snapshot import Snapshot
@@ -131,5 +131,5 @@ def same_again(connection: Connection, command: str) -> str:
     words = list(context.find_root().obj)
     if context.get_parameter_source("port") is ParameterSource.ENVIRONMENT:
         at = words.index(command) + 1
-        words[at:at] = ["-p", connection.target]
+        words[at:at] = ["-p", connection.address.target]
     return shlex.join(["fatektool", *words])

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fatektool.cli.shared.options import PATH, USUAL_FORMATS, voice_options
+from fatektool.address import DEFAULT_FORMATS
+from fatektool.cli.shared.options import PATH, voice_options
 from fatektool.cli.shared.output import print_json
 from fatektool.cli.shared.pairs import apart, given, together
 from fatektool.errors import UsageError
@@ -77,7 +78,7 @@ _DEFAULT_MODELS = ", ".join(f"{slave.model} with {name}" for name, slave in SLAV
 @click.option(
     "--format",
     "line_format",
-    help=f"Bits a character, for the pace.  [default: {USUAL_FORMATS}]",
+    help=f"Bits a character, for the pace.  [default: {DEFAULT_FORMATS}]",
 )
 @click.option("--scan-ms", type=click.FloatRange(0, 60_000), default=0.0, help="Time to answer.")
 @click.option(

@@ -8,7 +8,6 @@ import threading
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import LineError
-from fatektool.protocol.registry import codec_named
 from fatektool.transport.serial_line.url import host_of
 from fatektool.transport.serial_line.url import line_of as serial_line
 from fatektool.transport.target import Target, TargetKind
@@ -16,19 +15,21 @@ from fatektool.transport.target import Target, TargetKind
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from fatektool.address import PlcAddress
+
+
 _LOOK_UP_S: Final = 5.0
 
 
-def line_of(target: str, protocol: str, name: str, addresses: dict[str, str]) -> str:
+def line_of(address: PlcAddress, name: str, addresses: dict[str, str]) -> str:
     """What a PLC's line is called: the same for two PLCs that must not be asked at once.
 
     Args:
-        target: as for ``connect``.
-        protocol: which may name the TCP port.
+        address: the PLC's.
         name: the PLC's; a fresh simulated PLC shares its line with nobody.
         addresses: hosts and their addresses, of ``addresses_of``.
     """
-    where = Target.parse(target, default_port=codec_named(protocol).default_tcp_port)
+    where = address.where
     if where.kind is TargetKind.SIM:
         return f"sim:{os.path.realpath(where.path)}" if where.path else f"sim:{name}"
     gateway = _host(where)

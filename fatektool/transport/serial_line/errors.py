@@ -22,6 +22,8 @@ def open_error(target: str, line: LineSettings, error: Exception) -> FatektoolEr
     cause: BaseException = error
     if type(error.__context__).__name__ == "error":  # of termios: pyserial keeps its number as text only
         cause = error.__context__ or error
+    if wrong := _wrong_url(target, error):
+        return wrong
     number, text = getattr(error, "errno", None), str(error)
     if number is None and len(cause.args) == 2 and isinstance(cause.args[0], int):
         number, text = cause.args
@@ -40,12 +42,6 @@ def open_error(target: str, line: LineSettings, error: Exception) -> FatektoolEr
             f"{target}: no right to use the port",
             hint="on Linux join the group that owns it (often dialout) and log in again",
         )
-    if isinstance(error, ValueError) and text.startswith("invalid URL, protocol"):
-        return UsageError(
-            f"{target}: no such kind of target: {target.partition('://')[0]}://",
-            hint="expected a serial port such as /dev/ttyUSB0 or COM3, tcp://, udp://, rfc2217://, "
-            "socket://, hwgrep://, spy:// or sim:",
-        )
     if number in {errno.EINVAL, errno.ENOTTY} or isinstance(error, ValueError):
         return LineError(
             f"{target}: cannot be used as a serial port at {line}: {text}",
@@ -57,7 +53,7 @@ def open_error(target: str, line: LineSettings, error: Exception) -> FatektoolEr
 
 def network_error(
     target: str, line: LineSettings, error: Exception, *, lost: bool = False, said: str = ""
-) -> LineError:
+) -> FatektoolError:
     """A URL of another computer that cannot be opened, in the project's words.
 
     Args:
@@ -68,6 +64,8 @@ def network_error(
         said: what it said before.
     """
     cause = error.__context__
+    if wrong := _wrong_url(target, error):
+        return wrong
     if lost:
         return gateway_closed(target, said)
     if isinstance(cause, OSError) and str(error).startswith("Could not open port"):
@@ -89,6 +87,23 @@ def network_error(
             hint="check --baud and --format; or set the port in the gateway, and use tcp:// or socket://",
         )
     return LineError(f"{target}: cannot open: {error}", hint="check the URL, and that the gateway is on")
+
+
+def _wrong_url(target: str, error: Exception) -> UsageError | None:
+    """The error of a URL that pyserial does not understand; None for any other."""
+    if isinstance(error, ValueError) and str(error).startswith("invalid URL, protocol"):
+        return UsageError(
+            f"{target}: no such kind of target: {target.partition('://')[0]}://",
+            hint="expected a serial port such as /dev/ttyUSB0 or COM3, tcp://, udp://, rfc2217://, "
+            "socket://, hwgrep://, spy:// or sim:",
+        )
+    if any(isinstance(each, KeyError) for each in (error, error.__context__)):
+        reason = "unknown option or value"
+    elif "expected a string in the form" in str(error):
+        reason = str(error).partition('": ')[2]
+    else:
+        return None
+    return UsageError(f"{target}: invalid options: {reason}", hint="correct what follows the question mark")
 
 
 def gateway_closed(target: str, said: str) -> TransportClosed:

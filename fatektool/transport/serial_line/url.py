@@ -17,7 +17,7 @@ import re
 from typing import Final
 from urllib.parse import urlsplit
 
-from fatektool.errors import LineError
+from fatektool.errors import FatektoolError, LineError, UsageError
 
 NETWORK: Final = ("rfc2217://", "socket://")
 AROUND_A_DEVICE: Final = ("spy://", "alt://")
@@ -25,11 +25,30 @@ SEARCH: Final = "hwgrep://"
 LOOP: Final = "loop://"
 
 
+_SEARCHES: Final = "expected hwgrep://REGEX, such as 'hwgrep://FT232' or 'hwgrep://0403:6001'"
+
+
+def require_place(target: str) -> None:
+    """Check that a URL names what it must name: host and port, a device, what to search for.
+
+    Raises:
+        UsageError: it does not.
+    """
+    scheme, _, rest = target.partition("://")
+    scheme = f"{scheme.lower()}://"
+    if scheme in NETWORK:
+        host_of(target)
+    elif scheme in AROUND_A_DEVICE and not rest.partition("?")[0]:
+        raise UsageError(f"{target}: expected {scheme}PORT", hint=f"such as {scheme}/dev/ttyUSB0")
+    elif scheme == SEARCH and not rest.partition("&")[0]:
+        raise UsageError(f"{target}: expected a text to search for", hint=_SEARCHES)
+
+
 def host_of(target: str) -> tuple[str, int] | None:
     """Host and port of a URL that leads to another computer; None for any other target.
 
     Raises:
-        LineError: it names no host or no port.
+        UsageError: it names no host or no port.
     """
     if not target.lower().startswith(NETWORK):
         return None
@@ -39,8 +58,8 @@ def host_of(target: str) -> tuple[str, int] | None:
     except ValueError:
         host = port = None
     if not host or not port:
-        scheme = target.partition("://")[0]
-        raise LineError(
+        scheme = target.partition("://")[0].lower()
+        raise UsageError(
             f"{target}: expected {scheme}://HOST:PORT",
             hint=f"such as {scheme}://192.168.2.3:4001; the port is the gateway's",
         )
@@ -52,6 +71,7 @@ def device_of(target: str) -> str | None:
 
     Raises:
         LineError: a search that finds none.
+        UsageError: a search that is none.
     """
     if "://" not in target:
         return target
@@ -69,7 +89,7 @@ def line_of(target: str) -> str:
     """
     try:
         device = device_of(target)
-    except LineError:
+    except FatektoolError:
         device = None
     if device is None:
         return target.upper()
@@ -84,10 +104,7 @@ def _found(target: str) -> str:
     try:
         return str(Serial().from_url(target))
     except (ValueError, re.error) as error:
-        raise LineError(
-            f"{target}: no search that pyserial understands: {error}",
-            hint="expected hwgrep://REGEX, such as 'hwgrep://FT232' or 'hwgrep://0403:6001'",
-        ) from error
+        raise UsageError(f"{target}: invalid search: {error}", hint=_SEARCHES) from error
     except SerialException as error:
         raise LineError(
             f"{target}: no serial port here has such a name or description",

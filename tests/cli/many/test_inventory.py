@@ -30,11 +30,11 @@ def test_check(cli: Cli) -> None:
     Path("fatek.toml").write_text(PRESS + "x = 1\n[plc.q]\n")
     done = cli("inventory", "check")
     assert done.code == 1
-    keys = "baud, expect, format, lock_wait_s, project, protocol, read_only, reference, retries, spec, "
-    keys += "station, tags, target, timeout_s"
+    keys = "baud, expect, format, lock_wait_s, low_latency, project, protocol, read_only, reference, "
+    keys += "retries, spec, station, tags, target, timeout_s"
     assert done.out.splitlines() == [
         f"fatek.toml: line 5: plc.press: unknown key 'x': expected one of {keys}",
-        'fatek.toml: line 6: q: target is missing: expected for example target = "tcp://HOST"',
+        'fatek.toml: line 6: plc.q: target is missing: expected for example target = "tcp://HOST"',
     ]
     document = cli("inventory", "check", "--json").document("inventory-check")
     assert [fault["line"] for fault in document["faults"]] == [5, 6]
@@ -115,7 +115,7 @@ def umask() -> int:
         ("PRESS -p sim:", 2, "'PRESS' cannot be added: 'PRESS' differs only in case from 'press'"),
         ("COM3 -p sim:", 2, "cannot be added: name of a PLC: expected"),
         ("x -p tcp://", 2, "'x' cannot be added: plc.x: target 'tcp://': expected"),
-        ("x -p sim: --baud 9", 2, "'x' cannot be added: plc.x: baud: expected a whole number of 50"),
+        ("x -p sim: --baud 9", 2, "'--baud': expected a whole number from 50 to 4000000, got 9"),
         ("x", 2, "no PLC is given; give --port TARGET, or --from FILE"),
         ("x --from s.json -p sim:", 2, "--from does not go with --port"),
         ("x --from no.json", 2, "cannot read no.json"),

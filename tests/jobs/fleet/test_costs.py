@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from fatektool.address import PlcAddress
 from fatektool.cli.many.alarms import Alarms
 from fatektool.cli.many.fleet.run import Orders, run_fleet
 from fatektool.cli.many.outcome import Result
@@ -61,7 +62,7 @@ class Watched:
 
 
 def run(folder: Path, watch: Watch, *, fails: bool, json: bool) -> dict[str, Any]:
-    entries = {f"plc-{number}": PlcEntry(f"plc-{number}", "sim:") for number in range(PLCS)}
+    entries = {f"plc-{number}": PlcEntry(f"plc-{number}", PlcAddress("sim:")) for number in range(PLCS)}
     orders = Orders(Inventory(folder / "fatek.toml", entries), list(entries.values()), 1, 60.0)
     alarms = Slow(folder / "fleet.prom")
 

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from fatektool.address import PlcAddress
 from fatektool.errors import DeadlinePassed, LineError, TransportTimeout
 from fatektool.jobs.fleet.lines import addresses_of, line_of
 from fatektool.jobs.fleet.rounds import Fleet, Task, Turn
@@ -189,13 +190,14 @@ def test_looking_on() -> None:
 )
 def test_which_plcs_share_a_line(one: str, other: str, *, same: bool) -> None:
     addresses = {"gate": "10.0.0.9", "Gate": "10.0.0.9"}
-    a, b = (line_of(target, "facon", name, addresses) for target, name in ((one, "a"), (other, "b")))
+    a, b = (line_of(PlcAddress(target), name, addresses) for target, name in ((one, "a"), (other, "b")))
     assert (a == b) is same
 
 
 def test_two_names_of_one_device(tmp_path: Path) -> None:
     (tmp_path / "by-id").symlink_to("/dev/null")
-    assert line_of(str(tmp_path / "by-id"), "facon", "a", {}) == line_of("/dev/null", "facon", "b", {})
+    by_id = PlcAddress(str(tmp_path / "by-id"))
+    assert line_of(by_id, "a", {}) == line_of(PlcAddress("/dev/null"), "b", {})
 
 
 def test_names_of_hosts_are_looked_up() -> None:

@@ -9,9 +9,10 @@ import click
 
 from fatektool.cli.elements.values import shown, warn_of
 from fatektool.cli.shared.addressee import Origin, Pace, look
+from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.documents import where
 from fatektool.cli.shared.modbus_map import modbus_map_option
-from fatektool.cli.shared.options import PATH, Connection, connection_options, yes_option
+from fatektool.cli.shared.options import PATH, yes_option
 from fatektool.cli.shared.output import Voice, table
 from fatektool.cli.shared.pairs import apart
 from fatektool.cli.shared.places import safety_folder
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+    from fatektool.cli.shared.connection import Connection
     from fatektool.client import Plc
     from fatektool.jobs.elements.writes import NotTaken
     from fatektool.jobs.snapshots.snapshot import Snapshot

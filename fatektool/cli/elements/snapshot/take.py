@@ -13,9 +13,9 @@ import click
 from fatektool.cli.elements.selection import selected, spec_options
 from fatektool.cli.elements.values import SELECTION, warn_of
 from fatektool.cli.programs.program_files import comments_for, comments_options
-from fatektool.cli.shared.file_path import standard
+from fatektool.cli.shared.connection_options import connection_options_but_format
 from fatektool.cli.shared.modbus_map import modbus_map_option
-from fatektool.cli.shared.options import PATH, Connection, connection_options_but_format
+from fatektool.cli.shared.options import PATH, standard
 from fatektool.cli.shared.places import require_folder_for, require_free
 from fatektool.cli.shared.report import report_option, write_snapshot_report
 from fatektool.errors import PlcError, UsageError
@@ -29,6 +29,7 @@ from fatektool.protocol.commands import Command
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from fatektool.cli.shared.connection import Connection
     from fatektool.cli.shared.output import Voice
 
 _LINE: Final = re.compile(r"\d[A-Za-z][\d.]{1,3}", re.ASCII)
@@ -136,7 +137,7 @@ def take_command(
     elif output is not None:
         write_whole(Path(output), encoded(text), overwrite=True)
     if append is not None:
-        wait_s = max(60.0, connection.lock_wait_s)
+        wait_s = max(60.0, connection.address.lock_wait_s)
         append_line(append, as_ndjson(snapshot), kept, wait_s=wait_s, waiting=voice.say)
     if report is not None:
         write_snapshot_report(report, snapshot, append or folder)

@@ -9,12 +9,14 @@ import click
 from fatektool.cli.elements.values import warn_of
 from fatektool.cli.line.link.documents import ports_document
 from fatektool.cli.line.link.rows import detection_rows, high_speed_rows, modem_rows, port_rows
-from fatektool.cli.shared.options import Connection, connection_options
+from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.output import Voice, table
 from fatektool.jobs.plcports.ports import PortsReport, read_ports
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from fatektool.cli.shared.connection import Connection
 
 
 @click.command("ports", epilog="Example: fatektool link ports -p /dev/ttyUSB0")

@@ -10,7 +10,7 @@ from fatektool.cli.line.frame_view import printable
 from fatektool.cli.line.link.documents import result_document
 from fatektool.cli.line.link.kind import KIND
 from fatektool.cli.line.link.rows import abnormal_rows
-from fatektool.cli.shared.options import Connection, connection_options
+from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.output import Voice, table
 from fatektool.jobs.plcports.host import read_host
 from fatektool.jobs.plcports.ports import ResultReport, read_result
@@ -20,6 +20,8 @@ from fatektool.plcports.settings import ABNORMAL_STEP, UNWATCHED
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from fatektool.cli.shared.connection import Connection
 
 
 @click.command("result", epilog="Example: fatektool link result R100 --kind md0 -p /dev/ttyUSB0")

@@ -14,7 +14,8 @@ from fatektool.cli.many.alarms import Alarms, alarm_options
 from fatektool.cli.many.fleet.run import Orders, fleet_options, run_fleet
 from fatektool.cli.many.plugin import PluginCommand, plugin_line
 from fatektool.cli.many.run_check import check_result, run_check
-from fatektool.cli.shared.options import PATH, connection_of
+from fatektool.cli.shared.connection import Connection
+from fatektool.cli.shared.options import PATH
 from fatektool.cli.shared.pairs import apart
 from fatektool.errors import UsageError
 from fatektool.jobs.check.age import parse_age
@@ -71,7 +72,7 @@ def check_command(
         limit = turn.limit
         if limit is None:  # it has begun: for the type checker
             raise AssertionError
-        connection = connection_of(entry)
+        connection = Connection(entry.address, entry)
         found = run_check(
             connection,
             plan,

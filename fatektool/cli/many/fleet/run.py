@@ -13,8 +13,9 @@ from fatektool.cli import Interrupted
 from fatektool.cli.many.documents import FleetRun, fleet_document
 from fatektool.cli.many.fleet.view import View
 from fatektool.cli.many.outcome import Outcome, Result, failure
+from fatektool.cli.shared.connection import Connection
 from fatektool.cli.shared.inventory_file import complete_names, inventory_option, open_inventory
-from fatektool.cli.shared.options import Seconds, connection_of, voice_options
+from fatektool.cli.shared.options import Seconds, voice_options
 from fatektool.errors import FatektoolError
 from fatektool.files.times import utc
 from fatektool.inventory.select import select
@@ -81,7 +82,7 @@ def fleet_options(function: F) -> F:
     )
     @click.option(
         "--deadline",
-        type=Seconds(0, 86400, min_open=True),
+        type=Seconds(0, 86400, above=True),
         default=1800.0,
         show_default=True,
         metavar="S",
@@ -141,9 +142,9 @@ def run_fleet(
         ``fatektool.fleet/1``, and True if it was interrupted.
     """
     time_, began = utc(), time.monotonic()
-    addresses = addresses_of(entry.target for entry in orders.entries)
+    addresses = addresses_of(entry.address.target for entry in orders.entries)
     tasks = [
-        Task(entry.name, line_of(entry.target, entry.protocol, entry.name, addresses), partial(work, entry))
+        Task(entry.name, line_of(entry.address, entry.name, addresses), partial(work, entry))
         for entry in orders.entries
     ]
     entries = {entry.name: entry for entry in orders.entries}
@@ -176,7 +177,9 @@ def run_fleet(
     for entry in orders.entries:
         if entry.name not in outcomes:
             error = Interrupted("interrupted before it was done")
-            outcomes[entry.name] = Outcome(entry.name, entry.target, entry.station, 0.0, failure(error))
+            outcomes[entry.name] = Outcome(
+                entry.name, entry.address.target, entry.address.station, 0.0, failure(error)
+            )
     alarms.write(set(orders.inventory.plcs), voice)
     ordered = [outcomes[entry.name] for entry in orders.entries]
     run = FleetRun(job, time_, time.monotonic() - began, orders.inventory.file, ordered, interrupted)
@@ -185,7 +188,9 @@ def run_fleet(
 
 def opened(entry: PlcEntry, turn: Turn[Result], voice: Voice, *needs: Command) -> Plc:
     """The PLC, connected within the limit of its turn."""
-    return connection_of(entry).open(voice.of(entry.name), needs=needs, limit=turn.limit, shared=turn.shared)
+    return Connection(entry.address, entry).open(
+        voice.of(entry.name), needs=needs, limit=turn.limit, shared=turn.shared
+    )
 
 
 def ended(job: str, document: dict[str, Any], voice: Voice, alarms: Alarms, *, interrupted: bool) -> int:
@@ -216,4 +221,4 @@ def _outcome(entry: PlcEntry, turn: Turn[Result]) -> Outcome:
     result = turn.result
     if result is None:
         result = failure(turn.error or FatektoolError("nothing came of it"))
-    return Outcome(entry.name, entry.target, entry.station, turn.duration_s or 0.0, result)
+    return Outcome(entry.name, entry.address.target, entry.address.station, turn.duration_s or 0.0, result)

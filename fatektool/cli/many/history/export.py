@@ -10,8 +10,7 @@ from fatektool.cli.many.history.documents import (
     export_document,
 )
 from fatektool.cli.many.history.options import history_option, name_and_revision
-from fatektool.cli.shared.file_path import is_standard
-from fatektool.cli.shared.options import PATH, voice_options
+from fatektool.cli.shared.options import PATH, is_standard, voice_options
 from fatektool.cli.shared.output import table
 from fatektool.cli.shared.pairs import together
 from fatektool.cli.shared.streams import print_bytes

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
+from fatektool.address import CHECKS
 from fatektool.cli.many.inventory.documents import add_document
+from fatektool.cli.shared.connection_options import ROWS, address_options, given_of
 from fatektool.cli.shared.inventory_file import inventory_option, inventory_path
 from fatektool.cli.shared.options import PATH, voice_options
 from fatektool.cli.shared.pairs import apart
@@ -17,11 +19,12 @@ from fatektool.files.atomic import read_bounded, write_whole
 from fatektool.inventory.add import with_plc
 from fatektool.inventory.find import FILE_NAME
 from fatektool.inventory.load import MAX_INVENTORY
-from fatektool.protocols import PROTOCOLS
 
 if TYPE_CHECKING:
     from fatektool.cli.shared.output import Voice
 
+_ROWS: Final = tuple(row._replace(variable=None) for row in ROWS if row.field in CHECKS)
+_OF_SCAN: Final = ("port", "station", "protocol", "baud", "line_format")
 _MAX_SCAN: Final = 4 << 20
 
 
@@ -33,12 +36,8 @@ _MAX_SCAN: Final = 4 << 20
 @click.option(
     "--from", "scan", type=PATH, metavar="FILE|-", help="Output of 'scan --json': add each station."
 )
-@click.option("-p", "--port", "target", metavar="TARGET", help="Target of the PLC.")
-@click.option("-s", "--station", type=click.IntRange(0, 255), help="Station number.  [default: 1]")
-@click.option("--protocol", type=click.Choice(list(PROTOCOLS)), help="Protocol of the PLC.")
-@click.option("--baud", type=int, help="Speed of the serial line.")
-@click.option("--format", "line_format", metavar="7E1", help="Data bits, parity, stop bits.")
 @click.option("--tag", "tags", multiple=True, help="A word for --select; repeat for more.")
+@address_options(_ROWS)
 @inventory_option
 @voice_options
 def add_command(
@@ -46,13 +45,9 @@ def add_command(
     voice: Voice,
     *,
     scan: Path | None,
-    target: str | None,
-    station: int | None,
-    protocol: str | None,
-    baud: int | None,
-    line_format: str | None,
     tags: tuple[str, ...],
     inventory: Path | None,
+    **values: Any,
 ) -> None:
     """Add a PLC as NAME, or the PLCs that a scan found as NAME-1, NAME-2 and so on, by station.
 
@@ -61,34 +56,25 @@ def add_command(
     """
     path = inventory_path(inventory) or Path(FILE_NAME)
     data = read_bounded(path, MAX_INVENTORY) if path.exists() else b""
-    options = {"station": station, "protocol": protocol, "baud": baud, "format": line_format}
-    given = {key: value for key, value in options.items() if value is not None}
+    given = given_of(values, _ROWS)
     if scan is not None:
-        apart(
-            "scan",
-            "target",
-            "station",
-            "protocol",
-            "baud",
-            "line_format",
-            why="the scan has target and settings",
-        )
-        wanted = _scanned(scan, name)
+        apart("scan", *_OF_SCAN, why="the scan has target and settings")
+        wanted = {each: found | given for each, found in _scanned(scan, name).items()}
     else:
-        if target is None:
+        if "target" not in given:
             raise UsageError(
                 "no PLC is given", hint="give --port TARGET, or --from FILE with the output of a scan"
             )
-        wanted = {name: {"target": target, **given}}
+        wanted = {name: given}
     added = []
     known = _known(data, path) if scan is not None else set()
-    for each, values in wanted.items():
-        if scan is not None and (values["target"], values["station"]) in known:
+    for each, keys in wanted.items():
+        if scan is not None and (keys["target"], keys["station"]) in known:
             voice.say(
-                f"skipped station {values['station']} on {values['target']}: it is in the inventory already"
+                f"skipped station {keys['station']} on {keys['target']}: it is in the inventory already"
             )
             continue
-        data = with_plc(data, path, each, values | ({"tags": list(tags)} if tags else {}))
+        data = with_plc(data, path, each, keys | ({"tags": list(tags)} if tags else {}))
         added.append(each)
     if added:
         mode = path.stat().st_mode & 0o777 if path.exists() else 0o644
@@ -99,7 +85,8 @@ def add_command(
 def _known(data: bytes, path: Path) -> set[tuple[str, int]]:
     from fatektool.inventory.entries import parse_inventory
 
-    return {(entry.target, entry.station) for entry in parse_inventory(data, path).plcs.values()}
+    plcs = parse_inventory(data, path).plcs.values()
+    return {(entry.address.target, entry.address.station) for entry in plcs}
 
 
 def _scanned(scan: Path, name: str) -> dict[str, dict[str, Any]]:

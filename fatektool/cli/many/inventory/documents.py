@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from fatektool.address import CHECKS
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
@@ -38,18 +40,11 @@ def add_document(path: Path, added: Iterable[str]) -> dict[str, Any]:
 def _entry_document(entry: PlcEntry) -> dict[str, Any]:
     return {
         "name": entry.name,
-        "target": entry.target,
-        "station": entry.station,
-        "protocol": entry.protocol,
-        "baud": entry.baud,
-        "format": entry.format,
-        "timeout_s": entry.timeout_s,
-        "retries": entry.retries,
-        "lock_wait_s": entry.lock_wait_s,
+        **{key: getattr(entry.address, key) for key in CHECKS},
+        "format": entry.address.line.format,
         "tags": list(entry.tags),
         "spec": None if entry.spec is None else str(entry.spec),
         "reference": None if entry.reference is None else str(entry.reference),
         "project": None if entry.project is None else str(entry.project),
         "expect": entry.expect,
-        "read_only": entry.read_only,
     }

@@ -32,7 +32,10 @@ def list_command(inventory: Path | None, words: tuple[str, ...], voice: Voice) -
 
 
 def _rows(entries: list[PlcEntry]) -> Iterator[str]:
-    rows = [(entry.name, entry.target, str(entry.station), entry.protocol) for entry in entries]
+    rows = [
+        (entry.name, entry.address.target, str(entry.address.station), entry.address.protocol)
+        for entry in entries
+    ]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row, entry in zip(rows, entries, strict=True):
         cells = [f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)]

@@ -263,7 +263,7 @@ def test_a_backup_without_its_program_is_none() -> None:
         ("-p press --backup x --max-age 36", "expected a number and s, m, h or d"),
         ("-p press --reference x --no-reference", "does not go with"),
         ("-p press --reference no.json", "cannot read no.json"),
-        ("-p press -s 300", "300 is not in the range"),
+        ("-p press -s 300", "expected a whole number from 1 to 254, over modbus-tcp 0 and 255 too, got 300"),
         ("-p press --on-failure 'x", "No closing quotation"),
         ("-p press --prometheus x.txt", "expected a name that ends in .prom"),
     ],

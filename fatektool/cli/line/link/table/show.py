@@ -9,8 +9,9 @@ import click
 from fatektool.cli.line.link.documents import table_document
 from fatektool.cli.line.link.kind import KIND
 from fatektool.cli.line.link.table.view import table_lines
+from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.documents import where
-from fatektool.cli.shared.options import PATH, Connection, connection_options, voice_options
+from fatektool.cli.shared.options import PATH, voice_options
 from fatektool.files.atomic import read_bounded, require_place, write_whole
 from fatektool.jobs.plcports.host import LinkHost, read_host
 from fatektool.jobs.plcports.tables import parse_start, read_table
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from pathlib import Path
     from typing import TypeVar
 
+    from fatektool.cli.shared.connection import Connection
     from fatektool.cli.shared.output import Voice
 
     F = TypeVar("F", bound=Callable[..., Any])

@@ -12,8 +12,9 @@ from fatektool.cli.elements.values import warn_of
 from fatektool.cli.line.link.documents import fault_documents, host_document
 from fatektool.cli.line.link.table.view import table_lines
 from fatektool.cli.shared.addressee import Pace, look, time_row
+from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.documents import where
-from fatektool.cli.shared.options import PATH, Connection, connection_options, yes_option
+from fatektool.cli.shared.options import PATH, yes_option
 from fatektool.cli.shared.pairs import apart
 from fatektool.cli.shared.places import safety_folder
 from fatektool.cli.shared.way_back import RegisterWrite, same_again
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
+    from fatektool.cli.shared.connection import Connection
     from fatektool.cli.shared.output import Voice
     from fatektool.client import Plc
     from fatektool.jobs.elements.writes import NotTaken
