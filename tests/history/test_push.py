@@ -168,15 +168,15 @@ def test_what_is_shown_of_a_remote(url: str, shown: str) -> None:
     [
         (
             "nowhere",
-            "the folder does not exist; the history on this computer is not affected",
+            "the folder does not exist; nothing is lost",
             "the folder does not exist",
         ),
         ("git://127.0.0.1:1/x", "Connection refused", "expected a folder, http://"),
         ("http://user:secret@127.0.0.1:1/x", "unable to access 'http://127.0.0.1:1/x/'", "refused"),
         ("work", "branch is currently checked out", "it has a work tree, expected a bare repository"),
         ("work/.git", "branch is currently checked out", "it has a work tree, expected a bare repository"),
-        (".", "does not appear to be a git repository; the history", "NotGitRepository"),
-        ("", "no remote is given; the history on this computer is not affected", "no remote is given"),
+        (".", "does not appear to be a git repository; nothing is lost", "NotGitRepository"),
+        ("", "no remote is given; nothing is lost", "no remote is given"),
         ("a:b", "nossh: ", "FileNotFoundError"),
     ],
 )
@@ -322,9 +322,7 @@ def test_a_silent_one_is_ended_with_all_that_it_started(
     monkeypatch.setattr(bounded, "time", clock)
     monkeypatch.setattr(bounded, "_LOOK_S", 0.01)
     monkeypatch.setenv("GIT_SSH_COMMAND", str(ssh))
-    with pytest.raises(
-        PushFailed, match="git wrote nothing for 8 s; the history on this computer is not affected"
-    ):
+    with pytest.raises(PushFailed, match="git wrote nothing for 8 s; nothing is lost"):
         push(book.folder, f"ssh://nas.invalid{nas}", timeout_s=2)
     process = int(started.read_text())
     while _runs(process):

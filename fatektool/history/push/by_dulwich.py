@@ -182,7 +182,9 @@ def _ssh(repository: Repository, timeout_s: float) -> str:
 def _local(place: str, folder: Path) -> str:
     """A folder with a bare repository without hooks. A work tree would not be updated by the push."""
     if not folder.is_dir():
-        raise failed(place, "the folder does not exist", f"create it: git init --bare {shlex.quote(place)}")
+        raise failed(
+            place, "the folder does not exist", f"create the folder: git init --bare {shlex.quote(place)}"
+        )
     with Repo(str(folder)) as found:  # raises if it is not a repository
         if not is_bare(found):
             raise _failed(place, "it has a work tree, expected a bare repository ('git init --bare')")

@@ -95,7 +95,9 @@ class _Push:
         for place, path in zip(places, local, strict=True):
             if path is not None and not path.is_dir():
                 raise failed(
-                    place, "the folder does not exist", f"create it: git init --bare {shlex.quote(place)}"
+                    place,
+                    "the folder does not exist",
+                    f"create the folder: git init --bare {shlex.quote(place)}",
                 )
         if tip is None:
             return Pushed(shown, None, sent=False)

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 _LOGIN: Final = re.compile(r"(\w*)://([^/@:\s]*)(?::[^/@\s]*)?@")
-_SAFE: Final = "the history on this computer is not affected; the next push includes everything"
+_SAFE: Final = "nothing is lost: the next push includes everything"
 
 
 @dataclass(frozen=True, slots=True)

@@ -50,10 +50,7 @@ def test_record_and_push(cli: Cli, book: Book) -> None:
     failed = cli("history", "record", "press", "two.json", "--push", "nowhere")
     assert failed.code == 3
     assert failed.out.startswith("recorded  press: 2 words in 2 pages changed\n")
-    assert (
-        "could not push to nowhere: the folder does not exist; the history on this computer is not affected"
-        in one_line(failed.err)
-    )
+    assert "could not push to nowhere: the folder does not exist; nothing is lost" in one_line(failed.err)
     failed = cli("history", "record", "saw", "two.json", "--push", "nowhere", "--json")
     error = failed.document("error")["error"]
     assert (error["kind"], error["exit_code"]) == ("push_failed", 3)

@@ -26,7 +26,7 @@ def text() -> str:
 
 def test_check(cli: Cli) -> None:
     Path("fatek.toml").write_text(PRESS)
-    assert cli("inventory", "check") == (0, "fatek.toml: 1 PLCs, no faults\n", "")
+    assert cli("inventory", "check") == (0, "fatek.toml: 1 PLC, no faults\n", "")
     Path("fatek.toml").write_text(PRESS + "x = 1\n[plc.q]\n")
     done = cli("inventory", "check")
     assert done.code == 1

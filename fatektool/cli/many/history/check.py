@@ -1,4 +1,4 @@
-"""``history check``: every object and every backup of the history."""
+"""``history check``: all objects and backups of a history."""
 
 from __future__ import annotations
 
@@ -27,7 +27,10 @@ if TYPE_CHECKING:
 @history_option
 @voice_options
 def check_command(folder: Path, voice: Voice) -> int:
-    """Check every object and every backup of the history: exit 0 if none is damaged, 1 if one is."""
+    """Check all objects and backups of a history.
+
+    Exit 0 if nothing is damaged or missing, 1 if something is.
+    """
     with voice.progress("commits") as bar:
         found = check(folder, bar.update)
     voice.show(check_document(found, folder), _lines(found))

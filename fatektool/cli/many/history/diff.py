@@ -27,9 +27,10 @@ if TYPE_CHECKING:
 @history_option
 @voice_options
 def diff_command(name: str, a: str, b: str, folder: Path, voice: Voice, *, report: Path | None) -> int:
-    """Compare the program of a PLC at two revisions: exit 0 if it is the same, 1 if not.
+    """Compare a program at two revisions.
 
-    B defaults to the newest revision, A to the one before the last change.
+    B defaults to the newest revision, A to the one before the last change. Exit 0 if the program is the same,
+    1 if it differs.
     """
     history = History(folder)
     one, other = history.show(name, a), history.show(name, b)

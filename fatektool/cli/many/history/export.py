@@ -1,4 +1,4 @@
-"""``history export``: a backup out of the history."""
+"""``history export``: write a recorded backup to a file."""
 
 from __future__ import annotations
 
@@ -33,7 +33,10 @@ if TYPE_CHECKING:
 @history_option
 @voice_options
 def export_command(which: str, file: Path, folder: Path, voice: Voice, *, force: bool) -> None:
-    """Write a backup to FILE for 'restore': the newest of a PLC, or a revision's. - is standard output."""
+    """Write a recorded backup to FILE, for 'restore'.
+
+    It is the newest one of the PLC NAME, or that of the revision REV. - is standard output.
+    """
     name, revision = name_and_revision(which)
     history = History(folder)
     together("force", holds=not is_standard(file), needs="a file")

@@ -1,4 +1,4 @@
-"""``history``: the programs of many PLCs as they changed, in a git repository."""
+"""``history``: each version of the programs of many PLCs, in a git repository."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from fatektool.cli.shared.lazy_group import LazyGroup, Subcommand, commands
     "history",
     cls=LazyGroup,
     sections=commands(
-        record=Subcommand("many.history.record", "Keep a backup, if its program changed."),
+        record=Subcommand("many.history.record", "Record a backup, if the program changed."),
         log=Subcommand("many.history.log", "List the changes, newest first."),
-        show=Subcommand("many.history.show", "Show a PLC's program, the newest or at a revision."),
-        diff=Subcommand("many.history.diff", "Compare a PLC's program at two revisions."),
-        export=Subcommand("many.history.export", "Write a PLC's backup to a file."),
-        check=Subcommand("many.history.check", "Check every object and every backup."),
+        show=Subcommand("many.history.show", "Show a recorded backup, and what changed."),
+        diff=Subcommand("many.history.diff", "Compare a program at two revisions."),
+        export=Subcommand("many.history.export", "Write a recorded backup to a file."),
+        check=Subcommand("many.history.check", "Check all objects and backups."),
     ),
     epilog="Example: fatektool history log press-3 --history plc-history",
 )

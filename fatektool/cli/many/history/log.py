@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 @history_option
 @voice_options
 def log_command(name: str | None, folder: Path, voice: Voice, *, limit: int | None) -> None:
-    """List the changes of the PLC NAME, or of all PLCs, newest first."""
+    """List the changes, newest first: of the PLC NAME, or of all."""
     with closing(History(folder).log(name)) as changes:
         found = list(islice(changes, limit))
         more = next(changes, None) is not None

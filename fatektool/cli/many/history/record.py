@@ -1,4 +1,4 @@
-"""``history record``: a backup into the history."""
+"""``history record``: record a backup."""
 
 from __future__ import annotations
 
@@ -47,7 +47,10 @@ if TYPE_CHECKING:
 def record_command(
     name: str, file: Path, folder: Path, voice: Voice, *, remote: str | None, lock_wait: float
 ) -> None:
-    """Record the backup FILE for the PLC NAME, if the program changed. DIR is created if it is missing."""
+    """Record a backup, if the program changed.
+
+    FILE is the backup, NAME the PLC. DIR is created if it does not exist.
+    """
     backup = load_backup(file)
     found = History(folder, wait_s=lock_wait, waiting=voice.say).record(name, backup)
     for warning in found.warnings:

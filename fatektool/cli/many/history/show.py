@@ -31,7 +31,10 @@ if TYPE_CHECKING:
 @history_option
 @voice_options
 def show_command(which: str, folder: Path, voice: Voice) -> None:
-    """Show the newest backup of a PLC, or that of a revision, as 'inspect' does; then what changed."""
+    """Show a recorded backup, and what changed.
+
+    It is the newest one of the PLC NAME, or that of the revision REV.
+    """
     history = History(folder)
     found = history.show(*name_and_revision(which))
     before = history.before(found)

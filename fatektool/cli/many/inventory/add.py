@@ -1,4 +1,4 @@
-"""``inventory add``: PLCs to the end of the inventory."""
+"""``inventory add``: append PLCs to the inventory."""
 
 from __future__ import annotations
 
@@ -49,7 +49,9 @@ def add_command(
     inventory: Path | None,
     **values: Any,
 ) -> None:
-    """Add a PLC as NAME, or the PLCs that a scan found as NAME-1, NAME-2 and so on, by station.
+    """Add a PLC, or all that a scan found.
+
+    A PLC gets the name NAME, those of a scan get NAME-1, NAME-2 and so on, by station.
 
     They are appended to the inventory, all or none; the rest of the file is not changed. If there is none,
     fatek.toml is created in the current folder. Stations that are in the inventory already are skipped.

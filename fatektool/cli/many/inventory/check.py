@@ -26,7 +26,10 @@ if TYPE_CHECKING:
 @inventory_option
 @voice_options
 def check_command(inventory: Path | None, voice: Voice) -> int:
-    """Print each fault of the inventory with its line: exit 0 if there is none, 1 if there is one."""
+    """Check the inventory, and print its faults.
+
+    Exit 0 if there is no fault, 1 if there is one.
+    """
     path = inventory_path(inventory)
     if path is None:
         raise no_inventory()
@@ -34,7 +37,8 @@ def check_command(inventory: Path | None, voice: Voice) -> int:
     found.faults += _faults_of_files(found)
     document = check_document(path, found)
     lines = [f"{path}: {fault}" for fault in found.faults]
-    voice.show(document, lines or [f"{path}: {len(found.plcs)} PLCs, no faults"])
+    noun = "PLC" if len(found.plcs) == 1 else "PLCs"
+    voice.show(document, lines or [f"{path}: {len(found.plcs)} {noun}, no faults"])
     return 1 if found.faults else 0
 
 

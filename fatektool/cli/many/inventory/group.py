@@ -11,7 +11,7 @@ from fatektool.cli.shared.lazy_group import LazyGroup, Subcommand, commands
     "inventory",
     cls=LazyGroup,
     sections=commands(
-        check=Subcommand("many.inventory.check", "Print each fault of the inventory with its line."),
+        check=Subcommand("many.inventory.check", "Check the inventory, and print its faults."),
         list=Subcommand("many.inventory.list", "List the PLCs and their settings."),
         add=Subcommand("many.inventory.add", "Add a PLC, or all that a scan found."),
     ),
