@@ -13,7 +13,7 @@ from fatektool.errors import DataError, FatektoolError, UsageError
 from fatektool.files.atomic import write_whole
 from fatektool.history.names import require_name
 from fatektool.history.packing import is_due, pack_loose
-from fatektool.history.recording import RecordResult, look, unchanged, write
+from fatektool.history.recording import RecordResult, compare_with_last, unchanged, write
 from fatektool.history.repository import Repository, is_repository
 from fatektool.history.revisions import SHORT, changes_of, resolve
 from fatektool.history.trees import file_in, files
@@ -124,7 +124,7 @@ class History:
             seen = None
             if is_repository(self.folder):
                 with self._open() as repository:
-                    seen = look(repository, name, backup)
+                    seen = compare_with_last(repository, name, backup)
                 if seen.same:
                     return unchanged(name, seen)
             with writing(self.folder, self._wait_s, self._waiting), self._open() as repository:

@@ -2,11 +2,11 @@
 
 ::
 
-    look     the newest commit, its tree, this PLC's blob        enough for most PLCs on most nights
-    write    blob, tree, commit, then the branch (``writing``)   about 1 of 100; under the lock, looks again
+    compare_with_last   the newest commit, its tree, this PLC's blob        enough for most PLCs on most nights
+    write               blob, tree, commit, then the branch (``writing``)   about 1 of 100; compares again
 
-A look takes no lock and writes nothing, so a round waits only where a program changed. If the previous backup
-cannot be read, that is a warning, and the new one is recorded.
+The first comparison takes no lock and writes nothing, so a round waits only if a program changed. If the
+previous backup cannot be read, that is a warning, and the new one is recorded.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ class RecordResult:
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
+class BackupComparison:
     """A new backup compared with the last one that was recorded.
 
     Attributes:
@@ -81,7 +81,7 @@ class Look:
         return self.changes is not None and self.changes.same
 
 
-def look(repository: Repository, name: str, backup: Backup) -> Look:
+def compare_with_last(repository: Repository, name: str, backup: Backup) -> BackupComparison:
     """Compare a backup with the last one that was recorded.
 
     Raises:
@@ -90,21 +90,27 @@ def look(repository: Repository, name: str, backup: Backup) -> Look:
     newest = repository.newest()
     blob = file_in(newest.items, name)
     if blob is None:
-        return Look(newest)
+        return BackupComparison(newest)
     try:
         old = Backup.parse(repository.read(blob, "blob"), name)
     except DataError as error:  # the new backup is recorded all the same
-        return Look(newest, warnings=(f"the previous backup cannot be read: {error}",))
-    return Look(newest, old, compare(old.program, backup.program))
+        return BackupComparison(newest, warnings=(f"the previous backup cannot be read: {error}",))
+    return BackupComparison(newest, old, compare(old.program, backup.program))
 
 
-def unchanged(name: str, found: Look) -> RecordResult:
+def unchanged(name: str, found: BackupComparison) -> RecordResult:
     """The result for a program that did not change."""
     return RecordResult(name, None, f"{name}: unchanged", found.changes)
 
 
 def write(
-    repository: Repository, name: str, backup: Backup, seen: Look | None, *, now: int, wait_s: float
+    repository: Repository,
+    name: str,
+    backup: Backup,
+    seen: BackupComparison | None,
+    *,
+    now: int,
+    wait_s: float,
 ) -> RecordResult:
     """Record a backup if it differs; the caller holds the lock of the history.
 
@@ -112,7 +118,7 @@ def write(
         repository: the history.
         name: the PLC.
         backup: its program.
-        seen: a look before the lock was taken; used again if nothing was written since.
+        seen: a comparison before the lock was taken; used again if nothing was written since.
         now: seconds since 1970.
         wait_s: how long to wait for another git program.
 
@@ -124,7 +130,11 @@ def write(
     """
     while True:  # again if something was pushed into the history meanwhile
         tip = repository.tip()
-        found = seen if seen is not None and seen.newest.tip == tip else look(repository, name, backup)
+        found = (
+            seen
+            if seen is not None and seen.newest.tip == tip
+            else compare_with_last(repository, name, backup)
+        )
         if found.same:
             return unchanged(name, found)
         networks = _networks(found.old, backup)
