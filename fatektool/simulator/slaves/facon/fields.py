@@ -1,4 +1,4 @@
-"""Reads the fields of a FACON request's data one after the other, and says no as a PLC does.
+"""How FACON writes the fields of a request's data, in characters.
 
 ::
 
@@ -6,13 +6,8 @@
     element  X0016  WY0008  DWM0000  RT0000  R00012  DR00002
     value    1, 4 or 8 characters by the element's width
 
-Which error a bad field is (FACON paper, section 3 gives the words, the examples are in brackets):
-
-* **4, illegal format**: too few or too many characters, an unknown symbol, a register where a
-  discrete is due or the other way round.
-* **2, illegal value**: a character that is no digit of its field ('decimal format contains
-  hexadecimal number'), and an n or control code out of its range ('over range of value').
-* **A, illegal address**: every element of the right form that this PLC does not have.
+A character that is no digit of its field is error 2, illegal value ('decimal format contains hexadecimal
+number'); so is an n or a control code out of its range ('over range of value'; FACON paper, section 3).
 """
 
 from __future__ import annotations
@@ -22,6 +17,7 @@ import re
 from fatektool.simulator.elements import KINDS, Kind
 from fatektool.simulator.refusal import Refusal, RefusalCode
 from fatektool.simulator.slaves.facon.frame import BYTE_OF
+from fatektool.simulator.slaves.fatek.fields import Fields
 
 _HEX_DIGITS = b"0123456789ABCDEF"
 _LETTERS = re.compile(rb"[A-Z]*")
@@ -31,57 +27,43 @@ _BY_SYMBOL = {
 }
 """R, D and F addresses have 5 digits, all others 4 (FACON paper, section 4.1)."""
 
-VALUE_CHARACTERS = {1: 1, 16: 4, 32: 8}
-"""Characters of one value by the element's bits."""
+_STATE_OF_CHARACTER = bytes.maketrans(b"01", b"\x00\x01")
+_CHARACTER_OF_STATE = bytes.maketrans(b"\x00\x01", b"01")
 
 
-def hex_value(text: bytes) -> int:
-    """Upper-case hex digits as a number."""
+def require_hex(text: bytes) -> None:
+    """Refuses what is not all upper-case hex digits."""
     if text.translate(None, _HEX_DIGITS):
         raise Refusal(RefusalCode.ILLEGAL_VALUE)
-    return int(text, 16)
 
 
-class Fields:
-    """A cursor over the data of one request."""
+def to_hex(content: bytes) -> bytes:
+    """Bytes as upper-case hex digits."""
+    return content.hex().upper().encode("ascii")
 
-    def __init__(self, data: bytes) -> None:
-        self._data = data
-        self._position = 0
 
-    def take(self, count: int) -> bytes:
-        """The next ``count`` characters."""
-        start = self._position
-        self._position = end = start + count
-        if end > len(self._data):
-            raise Refusal(RefusalCode.ILLEGAL_FORMAT)
-        return self._data[start:end]
+class FaconFields(Fields):
+    """A cursor over characters."""
 
-    def end(self) -> None:
-        """Refuses anything that is left."""
-        if self._position != len(self._data):
-            raise Refusal(RefusalCode.ILLEGAL_FORMAT)
+    def take_number(self) -> int | None:
+        """Two hex digits."""
+        return BYTE_OF.get(self.take(2))
 
-    def count(self, limit: int) -> int:
-        """n, 1 to ``limit``; 00 means 256 if that is the limit."""
-        value = BYTE_OF.get(self.take(2))
-        if value == 0 and limit == 256:
-            return limit
-        if value is None or not 1 <= value <= limit:
-            raise Refusal(RefusalCode.ILLEGAL_VALUE)
-        return value
-
-    def code(self, first: int, last: int) -> int:
-        """A control code of one digit."""
+    def take_digit(self) -> int | None:
+        """One decimal digit."""
         digit = self.take(1)
-        if not digit.isdigit() or not first <= int(digit) <= last:
-            raise Refusal(RefusalCode.ILLEGAL_VALUE)
-        return int(digit)
+        return int(digit) if digit.isdigit() else None
+
+    def take_content(self, count: int) -> bytes:
+        """Two hex digits a byte."""
+        text = self.take(2 * count)
+        require_hex(text)
+        return bytes.fromhex(text.decode("ascii"))
 
     def element(self, *widths: int) -> tuple[Kind, int]:
-        """An element of one of ``widths`` bits: its kind and address."""
-        # All letters are the symbol: DX is no D, though D is one.
-        end = _letters_end(self._data, self._position)
+        """All letters are the symbol: DX is no D, though D is one."""
+        letters = _LETTERS.match(self._data, self._position)
+        end = letters.end() if letters else self._position
         found = _BY_SYMBOL.get(self._data[self._position : end])
         if found is None:
             raise Refusal(RefusalCode.ILLEGAL_FORMAT)
@@ -94,23 +76,17 @@ class Fields:
             raise Refusal(RefusalCode.ILLEGAL_VALUE)
         return kind, int(address)
 
-    def values(self, kind: Kind, count: int) -> list[int]:
-        """``count`` values of a register's width."""
-        width = VALUE_CHARACTERS[kind.bits]
-        text = self.take(width * count)
-        return [hex_value(text[at : at + width]) for at in range(0, len(text), width)]
-
     def states(self, count: int) -> bytes:
-        """``count`` states of discretes as bytes 0 or 1."""
+        """A character each."""
         text = self.take(count)
         if text.translate(None, b"01"):
             raise Refusal(RefusalCode.ILLEGAL_VALUE)
         return text.translate(_STATE_OF_CHARACTER)
 
+    def written(self, content: bytes) -> bytes:
+        """Two hex digits a byte."""
+        return to_hex(content)
 
-def _letters_end(data: bytes, start: int) -> int:
-    letters = _LETTERS.match(data, start)
-    return letters.end() if letters else start
-
-
-_STATE_OF_CHARACTER = bytes.maketrans(b"01", b"\x00\x01")
+    def written_states(self, states: bytes) -> bytes:
+        """A character each."""
+        return states.translate(_CHARACTER_OF_STATE)

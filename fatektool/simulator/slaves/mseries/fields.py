@@ -1,4 +1,4 @@
-"""Reads the fields of an M-series request's data one after the other, and says no as a PLC does.
+"""How the M-series writes the fields of a request's data, in bytes.
 
 ::
 
@@ -10,67 +10,35 @@
 A symbol has no length of its own: 44 may be D or the start of DD, DF, DR, DRT or DWX. The longest symbol that
 is there is the one. No address below 4300H begins with a byte that would make a symbol longer (M-series
 paper, section 2.4).
-
-Which error a bad field is (section 2.3 gives the words):
-
-* **4, illegal format**: too few or too many bytes, an unknown symbol, a register where a discrete is due or
-  the other way round.
-* **2, illegal value**: an n, a control code or a discrete's state out of its range.
-* **A, illegal address**: every element of the right form that this PLC does not have.
 """
 
 from __future__ import annotations
 
 from fatektool.simulator.elements import KINDS, Kind
 from fatektool.simulator.refusal import Refusal, RefusalCode
+from fatektool.simulator.slaves.fatek.fields import Fields
 
 _BY_SYMBOL = {symbol.encode("ascii"): kind for symbol, kind in KINDS.items()}
 _SYMBOL_LENGTHS = (3, 2, 1)
 
 
-def value_bytes(kind: Kind) -> int:
-    """Bytes of one value: 1, 2 or 4."""
-    return (kind.bits + 7) // 8
+class MSeriesFields(Fields):
+    """A cursor over bytes."""
 
+    def take_number(self) -> int | None:
+        """One byte."""
+        return self.take(1)[0]
 
-class Fields:
-    """A cursor over the data of one request."""
+    def take_digit(self) -> int | None:
+        """One byte."""
+        return self.take(1)[0]
 
-    def __init__(self, data: bytes) -> None:
-        self._data = data
-        self._position = 0
-
-    def take(self, count: int) -> bytes:
-        """The next ``count`` bytes."""
-        start = self._position
-        self._position = end = start + count
-        if end > len(self._data):
-            raise Refusal(RefusalCode.ILLEGAL_FORMAT)
-        return self._data[start:end]
-
-    def end(self) -> None:
-        """Refuses anything that is left."""
-        if self._position != len(self._data):
-            raise Refusal(RefusalCode.ILLEGAL_FORMAT)
-
-    def count(self, limit: int) -> int:
-        """n, 1 to ``limit``; 00 means 256 if that is the limit."""
-        value = self.take(1)[0]
-        if value == 0 and limit == 256:
-            return limit
-        if not 1 <= value <= limit:
-            raise Refusal(RefusalCode.ILLEGAL_VALUE)
-        return value
-
-    def code(self, first: int, last: int) -> int:
-        """A control code."""
-        value = self.take(1)[0]
-        if not first <= value <= last:
-            raise Refusal(RefusalCode.ILLEGAL_VALUE)
-        return value
+    def take_content(self, count: int) -> bytes:
+        """As it is."""
+        return self.take(count)
 
     def element(self, *widths: int) -> tuple[Kind, int]:
-        """An element of one of ``widths`` bits: its kind and address."""
+        """The longest symbol that is there, and two bytes."""
         start = self._position
         for length in _SYMBOL_LENGTHS:
             kind = _BY_SYMBOL.get(self._data[start : start + length])
@@ -83,15 +51,17 @@ class Fields:
         self._position = start + len(kind.symbol)
         return kind, int.from_bytes(self.take(2), "big")
 
-    def values(self, kind: Kind, count: int) -> list[int]:
-        """``count`` values of a register's width."""
-        width = value_bytes(kind)
-        data = self.take(width * count)
-        return [int.from_bytes(data[at : at + width], "big") for at in range(0, len(data), width)]
-
     def states(self, count: int) -> bytes:
-        """``count`` states of discretes as bytes 0 or 1."""
+        """A byte each."""
         states = self.take(count)
         if states.translate(None, b"\x00\x01"):
             raise Refusal(RefusalCode.ILLEGAL_VALUE)
+        return states
+
+    def written(self, content: bytes) -> bytes:
+        """As it is."""
+        return content
+
+    def written_states(self, states: bytes) -> bytes:
+        """A byte each."""
         return states

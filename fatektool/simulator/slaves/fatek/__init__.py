@@ -1,0 +1,1 @@
+"""What the simulated PLCs have in common over FACON and over the M-series protocol."""
