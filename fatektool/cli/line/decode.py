@@ -5,11 +5,12 @@ from __future__ import annotations
 import os
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
-from fatektool.cli.line.frame_view import explanation_document, field_lines
+from fatektool.cli.line.documents.frames import decode_document
+from fatektool.cli.line.frame_view import field_lines
 from fatektool.cli.shared.options import OneOf, voice_options
 from fatektool.cli.shared.pairs import together
 from fatektool.errors import DataError, UsageError
@@ -66,11 +67,7 @@ def decode_command(
         raise DataError(
             f"no {protocol} frame in it: expected {explainer.form}", hint=f"or is it --protocol {others}?"
         )
-    document = {
-        "schema": "fatektool.decode/1",
-        "protocol": protocol,
-        "frames": [_document(record, explanation) for record, explanation in found],
-    }
+    document = decode_document(protocol, found)
     voice.show(document, _lines(found, binary=explainer.binary))
     damaged = sum(explanation.fault is not None for _, explanation in found)
     if damaged:
@@ -119,14 +116,6 @@ def _records(frames: tuple[str, ...]) -> Iterator[TraceRecord]:
 
 def _direction(record: TraceRecord) -> Role:
     return Role.ANSWER if record.direction == RECEIVED else Role.REQUEST
-
-
-def _document(record: TraceRecord | None, explanation: Explanation) -> dict[str, Any]:
-    return {
-        "time": record.time if record else None,
-        "direction": record.direction if record else None,
-        **explanation_document(explanation),
-    }
 
 
 def _lines(found: Iterable[tuple[TraceRecord | None, Explanation]], *, binary: bool) -> Iterator[str]:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fatektool.cli.line.documents import doctor_document
+from fatektool.cli.line.documents.linetest import doctor_document
 from fatektool.cli.line.loopback_view import findings
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.jobs.linetest.doctor import examine

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fatektool.cli.line.frame_view import characters, explanation_document, field_lines
+from fatektool.cli.line.documents.frames import encode_document
+from fatektool.cli.line.frame_view import characters, field_lines
 from fatektool.cli.shared.options import OneOf, voice_options
 from fatektool.errors import UsageError
 from fatektool.jobs.command_operands import parse_hex
@@ -86,15 +87,7 @@ def encode_command(
         raw = _encoded(command, operands, answer=answer, **place)
     explainer = new_explainer(protocol)
     shown = _explained(explainer, raw, Role.ANSWER if answer else Role.REQUEST)
-    document = {
-        "schema": "fatektool.encode/1",
-        "protocol": protocol,
-        "hex": raw.hex().upper(),
-        "characters": characters(raw),
-        "bytes": len(raw),
-        "frame": explanation_document(shown),
-    }
-    voice.show(document, [raw.hex(" ").upper()])
+    voice.show(encode_document(protocol, raw, shown), [raw.hex(" ").upper()])
     if voice.json:
         return
     if not explainer.binary:

@@ -1,34 +1,13 @@
-"""A frame explained, as a document and as lines."""
+"""Frames and bytes for people."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fatektool.protocol.explain import Explanation
-
-
-def explanation_document(explanation: Explanation) -> dict[str, Any]:
-    """What a frame is, whom it is for, and its fields."""
-    return {
-        "role": explanation.role.value,
-        "raw": explanation.raw.hex().upper(),
-        "station": explanation.station,
-        "command": None if explanation.command is None else f"{explanation.command:02X}",
-        "checksum_ok": explanation.checksum_ok,
-        "fault": explanation.fault,
-        "fields": [
-            {
-                "name": field.name,
-                "raw": field.raw.hex().upper(),
-                "text": characters(field.raw),
-                "meaning": field.meaning,
-            }
-            for field in explanation.fields
-        ],
-    }
 
 
 def field_lines(explanation: Explanation, *, binary: bool) -> Iterator[str]:

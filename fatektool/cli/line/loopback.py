@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from fatektool.cli import INTERRUPTED
-from fatektool.cli.line.documents import loopback_document
+from fatektool.cli.line.documents.linetest import loopback_document
 from fatektool.cli.line.loopback_view import LiveFigures, lines
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.options import Seconds, Several

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
+from fatektool.cli.line.documents.linetest import network_document
 from fatektool.cli.line.frame_view import printable
 from fatektool.cli.shared.pairs import apart, given
 from fatektool.errors import UsageError
@@ -43,13 +44,13 @@ def look_for_modules(voice: Voice, network: str, timeout_s: float) -> int:
     )
     host, port = _host_and_port(network)
     listen_s = timeout_s if given("timeout") else LISTENED_S
-    head = {"time": utc(), "target": f"{host}:{port}"}
+    time = utc()
     shown = (lambda _: None) if voice.json else lambda answer: _show(voice, answer)
     found = discovery.discover(
         host, port, listen_s=listen_s, answer_port=discovery.ANSWER_PORT, on_answer=shown
     )
     if voice.json:
-        voice.show(_document(head, listen_s, found), ())
+        voice.show(network_document(time, f"{host}:{port}", listen_s, found), ())
     count = len({answer.address for answer in found})
     told = f"{count or 'no'} module{'' if count == 1 else 's'} answered at {host}, UDP port {port}"
     advice = "; on another network, or a firewall in between?" if not count else ""
@@ -76,24 +77,6 @@ def _lines(answer: Answer) -> Iterator[str]:
     for at in range(0, len(answer.data), _IN_A_LINE):
         part = answer.data[at : at + _IN_A_LINE]
         yield f"  {at:04X}  {part.hex(' ').upper():<47}  {printable(part)}"
-
-
-def _document(head: dict[str, Any], listen_s: float, found: list[Answer]) -> dict[str, Any]:
-    return {
-        "schema": "fatektool.network/1",
-        **head,
-        "requests": [request.hex(" ").upper() for request in discovery.REQUESTS],
-        "listened_s": listen_s,
-        "answers": [
-            {
-                "address": answer.address,
-                "port": answer.port,
-                "bytes": len(answer.data),
-                "hex": answer.data.hex(" ").upper(),
-            }
-            for answer in found
-        ],
-    }
 
 
 network_option = click.option(

@@ -9,7 +9,7 @@ import click
 
 from fatektool.address import default_format
 from fatektool.cli import INTERRUPTED
-from fatektool.cli.line.documents import scan_document, station_document
+from fatektool.cli.line.documents.linetest import scan_document, station_document
 from fatektool.cli.line.network import look_for_modules, network_option
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.options import OneOf, Several, type_of
@@ -142,7 +142,7 @@ def scan_command(
                 f"{connection.address.target} has no speed and format to try: expected a serial port",
                 hint="set them at the gateway",
             )
-        head = {"time": utc(), "target": connection.address.target}
+        time = utc()
         bar = stack.enter_context(voice.progress("probes"))
         result = scan(
             transport,
@@ -154,7 +154,7 @@ def scan_command(
             on_probe=lambda done, total: bar.update("scan", done, total),
         )
     if voice.json:
-        voice.show(scan_document(head, result, serial=serial), ())
+        voice.show(scan_document(time, connection.address.target, result, serial=serial), ())
     voice.say(_summary(result))
     if result.interrupted:
         return INTERRUPTED

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Result:
+class JobResult:
     """What a job gave.
 
     Attributes:
@@ -38,14 +38,14 @@ class Result:
     up: bool | None = True
 
 
-def failure(error: FatektoolError) -> Result:
+def failure(error: FatektoolError) -> JobResult:
     """The result of a job that failed."""
     up: bool | None = None
     if isinstance(error, LineError) and not isinstance(error, PortBusy):
         up = False
     elif isinstance(error, PlcError):
         up = True
-    return Result(error.exit_code, error_document(error), str(error), up=up)
+    return JobResult(error.exit_code, error_document(error), str(error), up=up)
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,4 +64,4 @@ class Outcome:
     target: str
     station: int
     duration_s: float
-    result: Result
+    result: JobResult

@@ -7,7 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from fatektool.cli.many.documents import check_document
-from fatektool.cli.many.outcome import Result
+from fatektool.cli.many.outcome import JobResult
 from fatektool.cli.shared.unfinished import unfinished_document
 from fatektool.jobs.check.plc import check_plc
 from fatektool.jobs.progress import Progress, no_progress
@@ -54,9 +54,9 @@ def run_check(
     )
 
 
-def check_result(connection: Connection, name: str, plan: CheckPlan, found: CheckResult) -> Result:
+def check_result(connection: Connection, name: str, plan: CheckPlan, found: CheckResult) -> JobResult:
     """What a check found, as the result of a turn."""
-    return Result(
+    return JobResult(
         int(found.state),
         found_document(connection, name, found),
         found.words,

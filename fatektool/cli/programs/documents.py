@@ -60,26 +60,21 @@ def saved_document(found: BackupResult, file: Path) -> dict[str, Any]:
     }
 
 
-def inspect_document(backup: Backup, file: Path) -> dict[str, Any]:
-    """``fatektool.inspect/1``."""
-    return {
-        "schema": "fatektool.inspect/1",
-        "file": str(file),
-        "kind": "backup",
-        **backup_summary(backup),
-        "faults": list(backup.program.header_faults),
-    }
+def inspect_document(found: ProgramFile) -> dict[str, Any]:
+    """``fatektool.inspect/1`` of a backup or of a project."""
+    if found.backup is not None:
+        parts = {**backup_summary(found.backup), "faults": list(found.program.header_faults)}
+    else:
+        parts = _project_summary(found)
+    return {"schema": "fatektool.inspect/1", "file": found.name, "kind": found.kind, **parts}
 
 
-def project_document(found: ProgramFile) -> dict[str, Any]:
-    """``fatektool.inspect/1`` of a project."""
+def _project_summary(found: ProgramFile) -> dict[str, Any]:
+    """What a project holds, without its image."""
     project, comments, code = found.project, found.comments, found.code
     assert project is not None  # noqa: S101  # the caller's condition
     known = found.header.family is not None
     return {
-        "schema": "fatektool.inspect/1",
-        "file": found.name,
-        "kind": "project",
         "project": {
             "name": comments.name,
             "model": project.model,

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fatektool.cli.programs.documents import inspect_document, project_document
+from fatektool.cli.programs.documents import inspect_document
 from fatektool.cli.programs.file_view import backup_rows, project_rows
 from fatektool.cli.programs.program_files import (
     encoding_option,
@@ -42,7 +42,5 @@ def inspect_command(file: Path, voice: Voice, *, raw: Path | None, force: bool, 
     if raw is not None:
         write_whole(raw, data, overwrite=force)
         voice.say(f"{len(data)} bytes written to {raw}")
-    if found is not None:
-        voice.show(inspect_document(found, file), table(backup_rows(found, str(file))))
-    else:
-        voice.show(project_document(on_file), table(project_rows(on_file)))
+    rows = project_rows(on_file) if found is None else backup_rows(found, str(file))
+    voice.show(inspect_document(on_file), table(rows))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from fatektool.cli.shared.documents import where
+from fatektool.cli.shared.documents import broadcast_document
 from fatektool.errors import UsageError
 
 if TYPE_CHECKING:
@@ -66,13 +66,6 @@ def send_to_all(
             raise UsageError("not agreed to: nothing was sent")
         for request in requests:
             plc.broadcast(request)
-        document = {
-            "schema": "fatektool.broadcast/1",
-            **where(plc),
-            "station": 0,
-            "command": command,
-            "sent": len(requests),
-            "verified": False,
-        }
+        document = broadcast_document(plc, command, len(requests))
     count = f"{len(requests)} request{'' if len(requests) == 1 else 's'}"
     voice.show(document, [f"'{command}': {count} sent to every PLC on the line, not proven: none answers"])

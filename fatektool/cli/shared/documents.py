@@ -33,3 +33,15 @@ def error_document(error: FatektoolError) -> dict[str, Any]:
             "details": error.details,
         },
     }
+
+
+def broadcast_document(plc: Plc, command: str, sent: int) -> dict[str, Any]:
+    """``fatektool.broadcast/1``: a command that was sent to every PLC on the line, in so many requests."""
+    return {
+        "schema": "fatektool.broadcast/1",
+        **where(plc),
+        "station": 0,
+        "command": command,
+        "sent": sent,
+        "verified": False,
+    }

@@ -10,6 +10,7 @@ import click
 
 from fatektool.cli.shared.options import voice_options
 from fatektool.cli.shared.output import Voice, print_json
+from fatektool.cli.tools.documents import schemas_document
 from fatektool.errors import UsageError
 
 
@@ -20,7 +21,7 @@ def schema_command(name: str | None, voice: Voice) -> None:
     """Print the JSON Schema of the document NAME; without NAME list the names."""
     known = schema_names()
     if name is None:
-        voice.show({"schema": "fatektool.schemas/1", "names": known}, known)
+        voice.show(schemas_document(known), known)
         return
     short = name.removeprefix("fatektool.").partition("/")[0]
     if short not in known:

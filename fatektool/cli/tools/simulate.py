@@ -13,6 +13,7 @@ from fatektool.address import DEFAULT_FORMATS
 from fatektool.cli.shared.options import PATH, voice_options
 from fatektool.cli.shared.output import print_json
 from fatektool.cli.shared.pairs import apart, given, together
+from fatektool.cli.tools.documents import simulate_document
 from fatektool.errors import UsageError
 from fatektool.protocols import DEFAULT, PROTOCOLS
 from fatektool.simulator.build import build_simulation
@@ -230,8 +231,7 @@ def _serve(
         opened = [make[kind](*_host_and_port(text)) for kind, text in doors]
         opened += [server.open_pty(link, pty_baud) for link in links]
         if voice.json:
-            addresses = [door.address for door in opened]
-            print_json({"schema": "fatektool.simulate/1", "listening": addresses})
+            print_json(simulate_document(door.address for door in opened))
         else:
             for door in opened:
                 click.echo(f"listening {door.address}")

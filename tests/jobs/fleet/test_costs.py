@@ -12,7 +12,7 @@ import pytest
 from fatektool.address import PlcAddress
 from fatektool.cli.many.alarms import Alarms
 from fatektool.cli.many.fleet.run import Orders, run_fleet
-from fatektool.cli.many.outcome import Result
+from fatektool.cli.many.outcome import JobResult
 from fatektool.cli.shared.output import Voice
 from fatektool.errors import LineError
 from fatektool.inventory.entries import Inventory, PlcEntry
@@ -66,13 +66,13 @@ def run(folder: Path, watch: Watch, *, fails: bool, json: bool) -> dict[str, Any
     orders = Orders(Inventory(folder / "fatek.toml", entries), list(entries.values()), 1, 60.0)
     alarms = Slow(folder / "fleet.prom")
 
-    def work(entry: PlcEntry, turn: Turn[Result]) -> Result:
+    def work(entry: PlcEntry, turn: Turn[JobResult]) -> JobResult:
         alarms.told.acquire()
         read_so_far = watch.large()
         turn.progress("reading", len(read_so_far), 0)
         if fails:
             raise LineError(f"{entry.name}: no answer")
-        return Result(0, read_so_far, "same", changed=False)
+        return JobResult(0, read_so_far, "same", changed=False)
 
     document, interrupted = run_fleet("verify", orders, alarms, Voice(json=json, quiet=True), work)
     assert not interrupted

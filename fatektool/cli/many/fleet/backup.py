@@ -10,7 +10,7 @@ import click
 
 from fatektool.cli.many.alarms import Alarms, alarm_options
 from fatektool.cli.many.fleet.run import Orders, ended, fleet_options, news_option, opened, run_fleet
-from fatektool.cli.many.outcome import Result
+from fatektool.cli.many.outcome import JobResult
 from fatektool.cli.programs.documents import saved_document
 from fatektool.cli.shared.image_words import warn_of_image
 from fatektool.cli.shared.options import PATH
@@ -104,7 +104,7 @@ def _work(
     *,
     single_pass: bool,
     any_header: bool,
-) -> Callable[[PlcEntry, Turn[Result]], Result]:
+) -> Callable[[PlcEntry, Turn[JobResult]], JobResult]:
     """``fleet backup``.
 
     Args:
@@ -116,7 +116,7 @@ def _work(
     """
     kept_in = None if history is None else history.folder
 
-    def work(entry: PlcEntry, turn: Turn[Result]) -> Result:
+    def work(entry: PlcEntry, turn: Turn[JobResult]) -> JobResult:
         own = voice.of(entry.name)
         with opened(entry, turn, voice, Command.READ_PAGE) as plc:
             found = read_backup(plc, single_pass=single_pass, any_header=any_header, progress=turn.progress)
@@ -136,7 +136,7 @@ def _work(
         document = saved_document(found, path or kept_in or Path())
         said = {None: "first backup", True: "CHANGED", False: "unchanged"}[changed]
         words = f"{said}, {program.header.text()}, {program.ladder_words} words"
-        return Result(0, document, words, path or kept_in, changed)
+        return JobResult(0, document, words, path or kept_in, changed)
 
     return work
 

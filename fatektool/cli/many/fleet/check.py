@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from fatektool.cli.many.outcome import Result
+    from fatektool.cli.many.outcome import JobResult
     from fatektool.cli.shared.output import Voice
     from fatektool.inventory.entries import PlcEntry
     from fatektool.jobs.fleet.rounds import Turn
@@ -62,7 +62,7 @@ def check_command(
     apart("on_change", "no_reference")
     age_s = None if max_age is None else parse_age(max_age)
 
-    def work(entry: PlcEntry, turn: Turn[Result]) -> Result:
+    def work(entry: PlcEntry, turn: Turn[JobResult]) -> JobResult:
         plan = CheckPlan(
             entry.expect,
             None if no_reference else entry.reference,

@@ -12,7 +12,7 @@ import click
 from fatektool.cli import Interrupted
 from fatektool.cli.many.documents import FleetRun, fleet_document
 from fatektool.cli.many.fleet.view import View
-from fatektool.cli.many.outcome import Outcome, Result, failure
+from fatektool.cli.many.outcome import JobResult, Outcome, failure
 from fatektool.cli.shared.connection import Connection
 from fatektool.cli.shared.inventory_file import complete_names, inventory_option, open_inventory
 from fatektool.cli.shared.options import Seconds, voice_options
@@ -124,7 +124,7 @@ def run_fleet(
     orders: Orders,
     alarms: Alarms,
     voice: Voice,
-    work: Callable[[PlcEntry, Turn[Result]], Result],
+    work: Callable[[PlcEntry, Turn[JobResult]], JobResult],
     *,
     lines: bool = True,
 ) -> tuple[dict[str, Any], bool]:
@@ -151,7 +151,7 @@ def run_fleet(
     outcomes: dict[str, Outcome] = {}
     interrupted = False
 
-    def report(turn: Turn[Result]) -> None:
+    def report(turn: Turn[JobResult]) -> None:
         outcome = _outcome(entries[turn.task.name], turn)
         # A document may be large, and an error holds the frames with what was read so far.
         turn.result = turn.error = None
@@ -186,7 +186,7 @@ def run_fleet(
     return fleet_document(run), interrupted
 
 
-def opened(entry: PlcEntry, turn: Turn[Result], voice: Voice, *needs: Command) -> Plc:
+def opened(entry: PlcEntry, turn: Turn[JobResult], voice: Voice, *needs: Command) -> Plc:
     """The PLC, connected within the limit of its turn."""
     return Connection(entry.address, entry).open(
         voice.of(entry.name), needs=needs, limit=turn.limit, shared=turn.shared
@@ -217,7 +217,7 @@ def ended(job: str, document: dict[str, Any], voice: Voice, alarms: Alarms, *, i
     return 1 if summary["failed"] else 0
 
 
-def _outcome(entry: PlcEntry, turn: Turn[Result]) -> Outcome:
+def _outcome(entry: PlcEntry, turn: Turn[JobResult]) -> Outcome:
     result = turn.result
     if result is None:
         result = failure(turn.error or FatektoolError("nothing came of it"))

@@ -8,7 +8,7 @@ import click
 
 from fatektool.cli.many.alarms import Alarms, alarm_options
 from fatektool.cli.many.fleet.run import Orders, ended, fleet_options, news_option, opened, run_fleet
-from fatektool.cli.many.outcome import Result
+from fatektool.cli.many.outcome import JobResult
 from fatektool.cli.programs.program_files import comments_of_entry
 from fatektool.cli.shared.options import PATH
 from fatektool.cli.shared.places import require_folder_for
@@ -43,10 +43,10 @@ def snapshot_command(orders: Orders, alarms: Alarms, voice: Voice, *, folder: Pa
     return ended("snapshot", document, voice, alarms, interrupted=interrupted)
 
 
-def _work(voice: Voice, folder: Path, keep: Keep | None) -> Callable[[PlcEntry, Turn[Result]], Result]:
+def _work(voice: Voice, folder: Path, keep: Keep | None) -> Callable[[PlcEntry, Turn[JobResult]], JobResult]:
     """``fleet snapshot``: into a folder for each PLC, as two may have the same station."""
 
-    def work(entry: PlcEntry, turn: Turn[Result]) -> Result:
+    def work(entry: PlcEntry, turn: Turn[JobResult]) -> JobResult:
         if entry.spec is None:
             raise UsageError("it has no specification", hint='put spec = "FILE.toml" into the inventory')
         spec = load_spec(entry.spec)
@@ -59,6 +59,6 @@ def _work(voice: Voice, folder: Path, keep: Keep | None) -> Callable[[PlcEntry, 
         wrong = f", {len(snapshot.errors)} refused: {', '.join(snapshot.errors)}"[:200]
         words = f"{len(snapshot.values)} values{wrong if snapshot.errors else ''}"
         code = PlcError.exit_code if snapshot.errors else 0
-        return Result(code, snapshot.document(), words, path)
+        return JobResult(code, snapshot.document(), words, path)
 
     return work

@@ -8,7 +8,7 @@ import click
 
 from fatektool.cli.many.alarms import Alarms, alarm_options
 from fatektool.cli.many.fleet.run import Orders, ended, fleet_options, news_option, opened, run_fleet
-from fatektool.cli.many.outcome import Result
+from fatektool.cli.many.outcome import JobResult
 from fatektool.cli.plc.documents import status_document
 from fatektool.jobs.status import read_status
 
@@ -32,13 +32,13 @@ def status_command(orders: Orders, alarms: Alarms, voice: Voice, *, brief: bool)
     return ended("status", document, voice, alarms, interrupted=interrupted)
 
 
-def _work(voice: Voice, *, brief: bool) -> Callable[[PlcEntry, Turn[Result]], Result]:
+def _work(voice: Voice, *, brief: bool) -> Callable[[PlcEntry, Turn[JobResult]], JobResult]:
     """``fleet status``."""
 
-    def work(entry: PlcEntry, turn: Turn[Result]) -> Result:
+    def work(entry: PlcEntry, turn: Turn[JobResult]) -> JobResult:
         with opened(entry, turn, voice) as plc:
             report = read_status(plc, brief=brief)
-        return Result(0, status_document(report), flag_words(report.flags), flags=report.flags)
+        return JobResult(0, status_document(report), flag_words(report.flags), flags=report.flags)
 
     return work
 

@@ -8,7 +8,7 @@ import click
 
 from fatektool.cli.many.alarms import Alarms, alarm_options
 from fatektool.cli.many.fleet.run import Orders, ended, fleet_options, news_option, opened, run_fleet
-from fatektool.cli.many.outcome import Result
+from fatektool.cli.many.outcome import JobResult
 from fatektool.cli.programs.differences import size_of
 from fatektool.cli.programs.documents import verify_document
 from fatektool.errors import UsageError
@@ -34,10 +34,10 @@ def verify_command(orders: Orders, alarms: Alarms, voice: Voice) -> int:
     return ended("verify", document, voice, alarms, interrupted=interrupted)
 
 
-def _work(voice: Voice) -> Callable[[PlcEntry, Turn[Result]], Result]:
+def _work(voice: Voice) -> Callable[[PlcEntry, Turn[JobResult]], JobResult]:
     """``fleet verify``."""
 
-    def work(entry: PlcEntry, turn: Turn[Result]) -> Result:
+    def work(entry: PlcEntry, turn: Turn[JobResult]) -> JobResult:
         reference = entry.reference
         if reference is None:
             raise UsageError("it has no reference", hint='put reference = "FILE" into the inventory')
@@ -49,6 +49,6 @@ def _work(voice: Voice) -> Callable[[PlcEntry, Turn[Result]], Result]:
         if found.pages.b_has_more:
             voice.of(entry.name).warn(f"the PLC has more pages than {reference}: they are not compared")
         words = f"same as {reference}" if found.same else f"DIFFERS from {reference}: {size_of(found)}"
-        return Result(0 if found.same else 1, document, words, reference, not found.same)
+        return JobResult(0 if found.same else 1, document, words, reference, not found.same)
 
     return work

@@ -1,10 +1,11 @@
-"""The JSON documents of ``loopback``, ``doctor`` and ``scan``."""
+"""The JSON documents of ``loopback``, ``doctor`` and ``scan``, also of a network."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
 from fatektool.cli.shared.documents import where
+from fatektool.transport import discovery
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from fatektool.jobs.linetest.loopback.result import LoopbackResult, Tally
     from fatektool.jobs.linetest.raw_frame import RawFrame
     from fatektool.jobs.linetest.scan_result import ScanResult, Setting, Station, Unclear
+    from fatektool.transport.discovery import Answer
 
 
 def loopback_document(plc: Plc, result: LoopbackResult, findings: Iterable[Finding]) -> dict[str, Any]:
@@ -127,17 +129,19 @@ def _searched(result: ScanResult) -> dict[str, Any]:
     }
 
 
-def scan_document(head: dict[str, Any], result: ScanResult, *, serial: bool) -> dict[str, Any]:
+def scan_document(time: str, target: str, result: ScanResult, *, serial: bool) -> dict[str, Any]:
     """``fatektool.scan/1``.
 
     Args:
-        head: time and target.
+        time: when it began, UTC.
+        target: as the user named it.
         result: what was found.
         serial: False for a medium without speed and format, whose documents say null there.
     """
     return {
         "schema": "fatektool.scan/1",
-        **head,
+        "time": time,
+        "target": target,
         "probes": result.probes,
         "duration_s": round(result.duration_s, 3),
         "interrupted": result.interrupted,
@@ -174,4 +178,31 @@ def _setting(setting: Setting, *, serial: bool) -> dict[str, Any]:
         "protocol": setting.codec.name,
         "baud": setting.line.baud if serial else None,
         "format": setting.line.format if serial else None,
+    }
+
+
+def network_document(time: str, target: str, listened_s: float, answers: Iterable[Answer]) -> dict[str, Any]:
+    """``fatektool.network/1``: which Ethernet modules answered a call.
+
+    Args:
+        time: when it was sent, UTC.
+        target: the address and port that it was sent to.
+        listened_s: for how long answers were waited for.
+        answers: what came.
+    """
+    return {
+        "schema": "fatektool.network/1",
+        "time": time,
+        "target": target,
+        "requests": [request.hex(" ").upper() for request in discovery.REQUESTS],
+        "listened_s": listened_s,
+        "answers": [
+            {
+                "address": answer.address,
+                "port": answer.port,
+                "bytes": len(answer.data),
+                "hex": answer.data.hex(" ").upper(),
+            }
+            for answer in answers
+        ],
     }
