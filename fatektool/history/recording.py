@@ -2,7 +2,7 @@
 
 ::
 
-    compare_with_last   the newest commit, its tree, this PLC's blob        enough for most PLCs on most nights
+    compare_with_last   the newest commit, its tree, this PLC's blob        enough for most PLCs each night
     write               blob, tree, commit, then the branch (``writing``)   about 1 of 100; compares again
 
 The first comparison takes no lock and writes nothing, so a round waits only if a program changed. If the
