@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NoReturn, TextIO
 
 import click
 
-from fatektool.cli.shared.output import print_json, tell
+from fatektool.cli.shared.output import print_json, print_stderr
 from fatektool.cli.shared.streams import mend_streams, reader_is_gone
 from fatektool.errors import DataError, FatektoolError, FileWarning, UsageError
 
@@ -60,9 +60,9 @@ def _show_warning(  # noqa: PLR0917  # the signature of warnings.showwarning
 ) -> None:
     """What a user is to know in one line; a developer's warnings as Python shows them."""
     if issubclass(category, FileWarning):
-        tell(f"warning: {message}")
+        print_stderr(f"warning: {message}")
     else:
-        tell(warnings.formatwarning(message, category, filename, lineno, line))
+        print_stderr(warnings.formatwarning(message, category, filename, lineno, line))
 
 
 def _run(words: list[str]) -> int:  # noqa: PLR0911  # a way out a class of error
@@ -76,7 +76,7 @@ def _run(words: list[str]) -> int:  # noqa: PLR0911  # a way out a class of erro
         return failed(_usage(error), as_json=as_json)
     except (click.Abort, KeyboardInterrupt) as stop:
         if sys.stderr.isatty():
-            tell("")  # the terminal shows ^C, and no new line
+            print_stderr("")  # the terminal shows ^C, and no new line
         return failed(Interrupted(": ".join(["interrupted", *map(str, stop.args)])), as_json=as_json)
     except BrokenPipeError:  # a pipe of somebody else's
         _drop_output()
@@ -121,7 +121,7 @@ def failed(error: FatektoolError, *, as_json: bool) -> int:
         with contextlib.suppress(OSError):
             print_json(error_document(error))
     for number, line in enumerate(error.lines or [" ".join(str(error).split())]):
-        tell(line if number else f"fatektool: {line}")
+        print_stderr(line if number else f"fatektool: {line}")
     return error.exit_code
 
 

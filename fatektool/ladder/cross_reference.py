@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from fatektool.ladder.networks import Code
 
 
-class Kind(StrEnum):
+class FindingKind(StrEnum):
     """What is odd about an element."""
 
     DOUBLE_COIL = "double-coil"
@@ -50,7 +50,7 @@ class Uses:
     writes: list[Place] = field(default_factory=list)
 
 
-class Finding(NamedTuple):
+class XrefFinding(NamedTuple):
     """Something odd.
 
     Attributes:
@@ -59,7 +59,7 @@ class Finding(NamedTuple):
         where: the instructions that show it.
     """
 
-    kind: Kind
+    kind: FindingKind
     element: str
     where: tuple[Place, ...]
 
@@ -123,7 +123,7 @@ class CrossReference:
                 found.writes.append(access.place)
         return found
 
-    def findings(self) -> list[Finding]:
+    def findings(self) -> list[XrefFinding]:
         """What is odd: an element with two coils, one that nothing reads or nothing writes."""
         found = [*self._double_coils()]
         read_on, written_on = self._tables(reads=True), self._tables(reads=False)
@@ -133,19 +133,21 @@ class CrossReference:
                 continue
             uses = self._uses(self._spans[element])
             if not uses.reads and _TO_OUTSIDE not in symbol and number < read_on.get(symbol, _NOWHERE):
-                found.append(Finding(Kind.NEVER_READ, element, tuple(uses.writes)))
+                found.append(XrefFinding(FindingKind.NEVER_READ, element, tuple(uses.writes)))
             if not uses.writes and _FROM_OUTSIDE not in symbol and number < written_on.get(symbol, _NOWHERE):
-                found.append(Finding(Kind.NEVER_WRITTEN, element, tuple(uses.reads)))
-        return sorted(found, key=lambda finding: (list(Kind).index(finding.kind), _order(finding.element)))
+                found.append(XrefFinding(FindingKind.NEVER_WRITTEN, element, tuple(uses.reads)))
+        return sorted(
+            found, key=lambda finding: (list(FindingKind).index(finding.kind), _order(finding.element))
+        )
 
-    def _double_coils(self) -> Iterator[Finding]:
+    def _double_coils(self) -> Iterator[XrefFinding]:
         coils: dict[str, list[Place]] = defaultdict(list)
         for access in self._accesses:
             if access.coil:
                 coils[access.element].append(access.place)
         for element, places in coils.items():
             if len(places) > 1:
-                yield Finding(Kind.DOUBLE_COIL, element, tuple(places))
+                yield XrefFinding(FindingKind.DOUBLE_COIL, element, tuple(places))
 
     def _touching(self, spans: Iterable[Span]) -> set[_Access]:
         found = set()

@@ -15,7 +15,7 @@ from fatektool.jobs.elements.selection import parse_items
 from fatektool.jobs.linetest.loopback.result import LoopbackPlan
 from fatektool.jobs.linetest.loopback.run import run_loopback
 from fatektool.jobs.linetest.scan import scan
-from fatektool.jobs.linetest.scan_result import Setting
+from fatektool.jobs.linetest.scan_result import ScanSetting
 from fatektool.jobs.programs.backup import backup
 from fatektool.jobs.programs.reading import MOST_PASSES
 from fatektool.jobs.programs.restore import restore
@@ -169,7 +169,7 @@ def tell_loopback(rig: Rig, _: Path) -> int:
 
 
 def tell_scan(rig: Rig, _: Path) -> int:
-    setting = Setting(rig.codec, rig.line)
+    setting = ScanSetting(rig.codec, rig.line)
     result = scan(rig.transport, [setting], SCANNED, timeout_s=0.5)
     found = [station.station for station in result.found]
     assert len(set(found)) == len(found)

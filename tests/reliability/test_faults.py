@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from fatektool.jobs.linetest.scan import scan
-from fatektool.jobs.linetest.scan_result import Setting
+from fatektool.jobs.linetest.scan_result import ScanSetting
 from fatektool.protocol.fatek.facon.codec import FACON
 from fatektool.simulator.faults import BIT_ERRORS, FAULT_KINDS, POWER_CUT
 from fatektool.transport.base import LineSettings
@@ -63,7 +63,7 @@ class Strangers:
 
 
 def test_a_station_that_is_in_no_paper_ends_no_scan_and_is_told() -> None:
-    setting = Setting(FACON, LineSettings())
+    setting = ScanSetting(FACON, LineSettings())
     result = scan(MemoryTransport(Strangers()), [setting], [2, 1], timeout_s=0.5)
     assert {station.station for station in result.found} == {1, 255}
 

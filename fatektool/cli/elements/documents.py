@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from fatektool.jobs.elements.items import ItemValues
     from fatektool.jobs.elements.selection import Item
     from fatektool.jobs.elements.writes import NotTaken
-    from fatektool.jobs.snapshots.compare import Change
+    from fatektool.jobs.snapshots.compare import ValueChange
     from fatektool.jobs.snapshots.snapshot import Snapshot
     from fatektool.protocol.elements import Element
 
@@ -97,7 +97,7 @@ def watch_document(snapshot: Snapshot, comments: Mapping[str, str]) -> dict[str,
 
 
 def snapshot_diff_document(
-    a: tuple[Path, Snapshot], b: tuple[Path, Snapshot], changes: Sequence[Change]
+    a: tuple[Path, Snapshot], b: tuple[Path, Snapshot], changes: Sequence[ValueChange]
 ) -> dict[str, Any]:
     """``fatektool.snapshot-diff/1`` of two files."""
     return {

@@ -18,7 +18,7 @@ from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.documents import error_document
 from fatektool.cli.shared.modbus_map import modbus_map_option
 from fatektool.cli.shared.options import Seconds
-from fatektool.cli.shared.output import tell
+from fatektool.cli.shared.output import print_stderr
 from fatektool.cli.shared.report import report_option, watch_report
 from fatektool.cli.shared.streams import reader_is_gone
 from fatektool.errors import FatektoolError, LineError, PlcError, TransportClosed
@@ -102,7 +102,7 @@ def _failed(error: FatektoolError | KeyboardInterrupt) -> int:
 
     told = error if isinstance(error, FatektoolError) else Interrupted("interrupted")
     click.echo(json.dumps(error_document(told)))
-    tell(f"fatektool: {' '.join(str(told).split())}")
+    print_stderr(f"fatektool: {' '.join(str(told).split())}")
     return told.exit_code
 
 

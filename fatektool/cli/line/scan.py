@@ -18,7 +18,7 @@ from fatektool.errors import UsageError
 from fatektool.exchange.no_answer import longer_timeout
 from fatektool.files.times import utc
 from fatektool.jobs.linetest.scan import scan
-from fatektool.jobs.linetest.scan_result import ScanResult, Setting
+from fatektool.jobs.linetest.scan_result import ScanResult, ScanSetting
 from fatektool.protocol.line_settings import BAUDS, FORMATS
 from fatektool.protocols import PROTOCOLS
 from fatektool.transport.base import BAUD, FORMAT, LineSettings
@@ -166,13 +166,13 @@ def _settings(
     bauds: tuple[int, ...] | None,
     formats: tuple[str, ...] | None,
     protocols: tuple[str, ...] | None,
-) -> list[Setting]:
+) -> list[ScanSetting]:
     """All that can be: protocol by protocol, the factory setting first.
 
     Raises:
         UsageError: a protocol for which no format has bits enough.
     """
-    found: dict[Setting, None] = {}
+    found: dict[ScanSetting, None] = {}
     for name in protocols or (address.protocol,):
         own = address.changed(protocol=name)
         codec, tried = own.codec, formats or (own.line.format,)
@@ -184,7 +184,9 @@ def _settings(
                 hint=f"add {default_format(codec)} to --formats",
             )
         factory = LineSettings(format=default_format(codec))
-        found |= {Setting(codec, line): None for line in sorted(carrying, key=lambda line: line != factory)}
+        found |= {
+            ScanSetting(codec, line): None for line in sorted(carrying, key=lambda line: line != factory)
+        }
     return list(found)
 
 

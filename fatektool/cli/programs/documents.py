@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from fatektool.jobs.programs.backup import BackupResult
     from fatektool.jobs.programs.restore import RestoreResult
     from fatektool.jobs.programs.verify import VerifyResult
-    from fatektool.ladder.cross_reference import CrossReference, Finding
+    from fatektool.ladder.cross_reference import CrossReference, XrefFinding
     from fatektool.ladder.differences import NetworkChange
     from fatektool.ladder.instruction import Instruction
     from fatektool.ladder.networks import Network
@@ -247,7 +247,7 @@ def xref_document(
     found: ProgramFile,
     reference: CrossReference,
     elements: Iterable[str],
-    findings: Iterable[Finding],
+    findings: Iterable[XrefFinding],
     comments: Mapping[str, str],
 ) -> dict[str, Any]:
     """``fatektool.xref/1``.

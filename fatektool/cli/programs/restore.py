@@ -15,7 +15,7 @@ from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.image_words import warn_of_image
 from fatektool.cli.shared.incomplete import restore_lines
 from fatektool.cli.shared.options import PATH, yes_option
-from fatektool.cli.shared.output import Bar, Voice, table
+from fatektool.cli.shared.output import ProgressBar, Voice, table
 from fatektool.cli.shared.pairs import apart
 from fatektool.cli.shared.places import safety_folder
 from fatektool.cli.shared.unfinished import RestoreMark, forget
@@ -151,7 +151,7 @@ class _Question:
     rows: list[tuple[str, object]]
     plc: str
     voice: Voice
-    bar: Bar
+    bar: ProgressBar
     yes: bool
 
     def ask(self, kept: str | None) -> None:

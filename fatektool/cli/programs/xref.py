@@ -12,20 +12,20 @@ from fatektool.cli.shared.inventory_file import inventory_option
 from fatektool.cli.shared.options import PATH, voice_options
 from fatektool.errors import UsageError
 from fatektool.ladder.addresses import spans_of
-from fatektool.ladder.cross_reference import CrossReference, Kind
+from fatektool.ladder.cross_reference import CrossReference, FindingKind
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
     from fatektool.cli.shared.output import Voice
-    from fatektool.ladder.cross_reference import Finding, Place
+    from fatektool.ladder.cross_reference import Place, XrefFinding
     from fatektool.ladder.networks import Code
 
 _SAID = {
-    Kind.DOUBLE_COIL: "has an OUT in several places: the last one wins",
-    Kind.NEVER_READ: "is written and never read",
-    Kind.NEVER_WRITTEN: "is read and never written",
+    FindingKind.DOUBLE_COIL: "has an OUT in several places: the last one wins",
+    FindingKind.NEVER_READ: "is written and never read",
+    FindingKind.NEVER_WRITTEN: "is read and never written",
 }
 _PLACES_SHOWN = 12
 
@@ -65,7 +65,7 @@ def xref_command(
     voice.show(document, _lines(code, document["elements"], findings))
 
 
-def _lines(code: Code, elements: Mapping[str, Any], findings: Sequence[Finding]) -> Iterator[str]:
+def _lines(code: Code, elements: Mapping[str, Any], findings: Sequence[XrefFinding]) -> Iterator[str]:
     texts = [instruction.text for instruction in code.instructions]
     for element, uses in elements.items():
         yield f"{element}  {uses['comment'] or ''}".rstrip()

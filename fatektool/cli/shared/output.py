@@ -33,7 +33,7 @@ def visible(text: str) -> str:
     return text.translate(_OBEYED)
 
 
-def tell(text: str) -> None:
+def print_stderr(text: str) -> None:
     """Print a line on stderr. That nobody hears it any more is no reason to leave a PLC half written."""
     with contextlib.suppress(OSError):
         click.echo(visible(text), err=True)
@@ -65,16 +65,16 @@ class Voice:
     def say(self, text: str) -> None:
         """Tell the user something, on stderr."""
         if not self.quiet:
-            tell(self.name + text)
+            print_stderr(self.name + text)
 
     def detail(self, text: str) -> None:
         """Tell a curious user something, on stderr."""
         if self.verbose:
-            tell(self.name + text)
+            print_stderr(self.name + text)
 
     def warn(self, text: str) -> None:
         """Warn the user, on stderr, quiet or not."""
-        tell(f"warning: {self.name}{text}")
+        print_stderr(f"warning: {self.name}{text}")
 
     def of(self, name: str) -> Voice:
         """The same voice where many PLCs are talked of: this one's name comes first."""
@@ -101,13 +101,13 @@ class Voice:
             click.echo(f"{visible(question)} [y/N]: ", nl=False, err=True)
             answer = sys.stdin.readline()
             if not answer:  # ^D, or the terminal is gone
-                tell("")
+                print_stderr("")
             word = answer.strip().lower()
             if word in {"y", "yes"}:
                 return True
             if word in {"", "n", "no"}:
                 return False
-            tell("please answer y or n")
+            print_stderr("please answer y or n")
 
     def require_answer(
         self, *, yes: bool, option: str = "--yes", unchanged: str = "nothing was done"
@@ -123,9 +123,9 @@ class Voice:
                 hint=f"add {option}",
             )
 
-    def progress(self, unit: str = "pages") -> Bar:
+    def progress(self, unit: str = "pages") -> ProgressBar:
         """A progress bar for a ``with`` statement; nothing where it would be noise."""
-        return Bar(unit, shown=shows_progress(self))
+        return ProgressBar(unit, shown=shows_progress(self))
 
 
 def shows_progress(voice: Voice) -> bool:
@@ -146,7 +146,7 @@ def table(rows: Iterable[tuple[str, object]]) -> Iterator[str]:
         yield f"{name:<{width}}  {value}".rstrip()
 
 
-class Bar:
+class ProgressBar:
     """What is done, rate and time left, on a terminal; ``update`` is a job's progress callback.
 
     Args:

@@ -38,7 +38,7 @@ TYPICAL_TURNAROUND_S: Final = 0.010
 
 
 @dataclass(slots=True)
-class Reading:
+class ElementReading:
     """What was read.
 
     Attributes:
@@ -58,7 +58,7 @@ class Reading:
 
 def read_elements(
     plc: Plc, elements: Iterable[Element | Stretch], *, limits: Mapping[str, int] | None = None
-) -> Reading:
+) -> ElementReading:
     """Read elements of any kind.
 
     Args:
@@ -76,7 +76,7 @@ def read_elements(
     named_one_by_one = _each(wanted)
     errors = reader.refusals.errors
     value = reader.known.value
-    return Reading(
+    return ElementReading(
         {element: value(element) for element in named_one_by_one if element not in errors},
         {element: errors[element] for element in named_one_by_one if element in errors},
         reader.refusals.not_asked,

@@ -19,7 +19,7 @@ from fatektool.jobs.linetest.high_speed import high_speed_findings
 from fatektool.jobs.linetest.loopback.result import LoopbackPlan
 from fatektool.jobs.linetest.loopback.run import run_loopback
 from fatektool.jobs.linetest.scan import scan
-from fatektool.jobs.linetest.scan_result import ScanResult, Setting, Station
+from fatektool.jobs.linetest.scan_result import ScanResult, ScanSetting, Station
 from fatektool.protocol.line_settings import BAUDS, FORMATS
 from fatektool.transport.base import LineSettings
 
@@ -142,7 +142,7 @@ def _look_elsewhere(plc: Plc, on_step: Callable[[str, int, int], object]) -> Sca
     """Try all speeds that these PLCs have, for a bounded time; the line is left as it was."""
     link = plc.link
     carried = [form for form in FORMATS if int(form[0]) >= (link.codec.data_bits or 0)]
-    settings = [Setting(link.codec, LineSettings(baud, form)) for form in carried for baud in BAUDS]
+    settings = [ScanSetting(link.codec, LineSettings(baud, form)) for form in carried for baud in BAUDS]
     try:
         result = scan(
             link.transport,

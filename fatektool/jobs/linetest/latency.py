@@ -17,7 +17,7 @@ _MOST_BARS: Final = 20
 
 
 @dataclass(frozen=True, slots=True)
-class Bar:
+class HistogramBar:
     """How many times lay in ``from_s <= time < to_s``, in seconds."""
 
     from_s: float
@@ -80,7 +80,7 @@ class Times:
         }
         return {name: round(value * 1000, 3) for name, value in values.items()}
 
-    def bars(self) -> list[Bar]:
+    def bars(self) -> list[HistogramBar]:
         """At most 20 bars of equal ratio from the shortest to the longest, empty ones in between included."""
         if not self.count:
             return []
@@ -90,4 +90,4 @@ class Times:
         for bucket, count in self._buckets.items():
             counts[(bucket - first) // width] += count
         edges = [2 ** ((first + place * width) / _PER_OCTAVE) for place in range(len(counts) + 1)]
-        return [Bar(edges[place], edges[place + 1], count) for place, count in enumerate(counts)]
+        return [HistogramBar(edges[place], edges[place + 1], count) for place, count in enumerate(counts)]

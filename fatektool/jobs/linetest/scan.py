@@ -35,7 +35,7 @@ from fatektool.protocol.status import BriefStatus
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from fatektool.jobs.linetest.scan_result import Setting
+    from fatektool.jobs.linetest.scan_result import ScanSetting
     from fatektool.protocol.codec import Frame
     from fatektool.transport.base import Transport
 
@@ -50,7 +50,7 @@ _FAR_APART: Final = (254, 247, 191, 128)
 
 def scan(
     transport: Transport,
-    settings: Sequence[Setting],
+    settings: Sequence[ScanSetting],
     stations: Sequence[int],
     *,
     timeout_s: float,
@@ -107,8 +107,8 @@ def scan(
 
 
 def _order(
-    settings: Sequence[Setting], stations: Sequence[int], result: ScanResult
-) -> Iterator[tuple[Setting, int]]:
+    settings: Sequence[ScanSetting], stations: Sequence[int], result: ScanResult
+) -> Iterator[tuple[ScanSetting, int]]:
     """All pairs; ``result`` is looked at when the first station was asked everywhere."""
     first, *others = stations
     for setting in settings:
@@ -123,7 +123,7 @@ class _Scanner:
     def __init__(
         self,
         transport: Transport,
-        first: Setting,
+        first: ScanSetting,
         timeout_s: float,
         *,
         retries: int,
@@ -135,18 +135,18 @@ class _Scanner:
         self._retries = retries
         self._result = result
         self._on_found = on_found
-        self._setting: Setting | None = None
-        self._done: set[Setting] = set()  # nothing more is to be asked there
-        self._silent: set[Setting] = set()  # not every number is answered there
+        self._setting: ScanSetting | None = None
+        self._done: set[ScanSetting] = set()  # nothing more is to be asked there
+        self._silent: set[ScanSetting] = set()  # not every number is answered there
         self._untold: list[Station] = []
-        self._answers: dict[Setting, dict[int, object]] = {}
+        self._answers: dict[ScanSetting, dict[int, object]] = {}
         self._asked: dict[int, float] = {}  # at this setting: when, with the wire time
         self._decoder = first.codec.decoder()
         self._closed = 0
         self._noise_bytes = 0
         self._heard_at = -inf
 
-    def is_open(self, setting: Setting) -> bool:
+    def is_open(self, setting: ScanSetting) -> bool:
         """True if there is something to ask at this setting; the line has it then.
 
         Raises:
@@ -156,7 +156,7 @@ class _Scanner:
             self._change_to(setting)
         return setting not in self._done
 
-    def probe(self, setting: Setting, station: int) -> None:
+    def probe(self, setting: ScanSetting, station: int) -> None:
         """Ask one station, again only after noise, and see whether it is there under every number."""
         if self._ask_until_clear(setting, station):
             self._compare(setting)
@@ -167,7 +167,7 @@ class _Scanner:
                 self._on_found(found)
         self._untold.clear()
 
-    def _ask_until_clear(self, setting: Setting, station: int) -> bool:
+    def _ask_until_clear(self, setting: ScanSetting, station: int) -> bool:
         for _ in range(self._retries + 1):
             self._noise_bytes = 0
             if self._ask(setting, station):
@@ -177,7 +177,7 @@ class _Scanner:
         self._result.unclear.append(Unclear(station, setting, self._noise_bytes))
         return False
 
-    def _compare(self, setting: Setting) -> None:
+    def _compare(self, setting: ScanSetting) -> None:
         """Does this station answer because it is there, or because the port answers any number?"""
         answers = self._answers.setdefault(setting, {})
         if setting in self._silent or len(answers) != _ENOUGH_TO_COMPARE:
@@ -198,7 +198,7 @@ class _Scanner:
             found.remove(each)
         self._done.add(setting)
 
-    def _change_to(self, setting: Setting) -> None:
+    def _change_to(self, setting: ScanSetting) -> None:
         if self._setting is None or setting.line != self._setting.line:
             try:
                 self._transport.set_line(setting.line)
@@ -223,7 +223,7 @@ class _Scanner:
             except TransportTimeout:
                 continue
 
-    def _ask(self, setting: Setting, station: int) -> bool:
+    def _ask(self, setting: ScanSetting, station: int) -> bool:
         """One request; True if its station answered."""
         transport, codec = self._transport, setting.codec
         probe = codec.probe
@@ -256,7 +256,7 @@ class _Scanner:
             transport.renew()
         return False
 
-    def _keep_quiet(self, setting: Setting) -> None:
+    def _keep_quiet(self, setting: ScanSetting) -> None:
         """Let the silence pass that the protocol wants between frames, and look at what breaks it."""
         quiet_s = setting.codec.quiet_chars * setting.line.byte_time_s
         while (rest := self._heard_at + quiet_s - self._transport.clock()) > 0:
@@ -265,7 +265,7 @@ class _Scanner:
             except TransportTimeout:
                 continue
 
-    def _look_at(self, data: bytes, setting: Setting, station: int = -1) -> list[int]:
+    def _look_at(self, data: bytes, setting: ScanSetting, station: int = -1) -> list[int]:
         """The stations whose answers are in the bytes; ``station`` is the one that is waited for."""
         answered: list[int] = []
         if data:
@@ -281,7 +281,7 @@ class _Scanner:
             except FrameError as error:
                 self._noise_bytes += len(error.raw)
 
-    def _take(self, frame: Frame, setting: Setting, *, late: bool) -> bool:
+    def _take(self, frame: Frame, setting: ScanSetting, *, late: bool) -> bool:
         """True for an answer; an echo of the request is none."""
         codec, brief = setting.codec, None
         answer: object = None

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Setting:
+class ScanSetting:
     """A protocol at a speed and format."""
 
     codec: Codec
@@ -33,7 +33,7 @@ class Station:
     """
 
     station: int
-    setting: Setting
+    setting: ScanSetting
     brief: BriefStatus | None
     latency_s: float | None
     late: bool = False
@@ -45,7 +45,7 @@ class Unclear:
     """A place where something was heard, and no frame of it."""
 
     station: int
-    setting: Setting
+    setting: ScanSetting
     noise_bytes: int
 
 
@@ -66,8 +66,8 @@ class ScanResult:
 
     found: list[Station] = field(default_factory=list)
     unclear: list[Unclear] = field(default_factory=list)
-    refused: list[Setting] = field(default_factory=list)
-    tried: list[Setting] = field(default_factory=list)
+    refused: list[ScanSetting] = field(default_factory=list)
+    tried: list[ScanSetting] = field(default_factory=list)
     probes: int = 0
     duration_s: float = 0.0
     interrupted: bool = False

@@ -21,7 +21,7 @@ from fatektool.errors import PlcError, UsageError
 from fatektool.jobs.elements.reads import named, read_elements
 from fatektool.jobs.elements.selection import Item
 from fatektool.jobs.elements.writes import NotTaken, write_planned
-from fatektool.jobs.plcports.tables import Change, WritePlan
+from fatektool.jobs.plcports.tables import RegisterChange, WritePlan
 from fatektool.jobs.snapshots.snapshot import raw_of, take_snapshot
 from fatektool.jobs.snapshots.spec import SpecItem
 from fatektool.plcports.phone_number import phone_number_words
@@ -144,7 +144,7 @@ def plan_modem(plc: Plc, settings: ModemSettings) -> WritePlan:
     now = {key: raw for key, (_, raw) in raw_of(present).items() if raw is not None}
     wanted = settings.apply(now)
     changes = tuple(
-        Change(element, now[str(element)], wanted[str(element)])
+        RegisterChange(element, now[str(element)], wanted[str(element)])
         for element in elements
         if now[str(element)] != wanted[str(element)]
     )

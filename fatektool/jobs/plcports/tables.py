@@ -71,7 +71,7 @@ def read_table(plc: Plc, start: Element, kind: TableKind) -> Table:
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class RegisterChange:
     """A register that will be written: what it holds, and what it shall hold."""
 
     element: Element
@@ -90,7 +90,7 @@ class WritePlan:
     """
 
     present: Snapshot
-    changes: tuple[Change, ...]
+    changes: tuple[RegisterChange, ...]
     same: int
 
 
@@ -120,7 +120,7 @@ def plan_write(plc: Plc, start: Element, words: Sequence[int]) -> WritePlan:
         )
     now = (raw for _, raw in raw_of(present).values())
     changes = tuple(
-        Change(element, before, after)
+        RegisterChange(element, before, after)
         for element, before, after in zip(elements, now, words, strict=True)
         if before is not None and before != after
     )

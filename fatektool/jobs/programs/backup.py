@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fatektool.files.times import utc
-from fatektool.jobs.programs.reading import Reading, read_program, read_program_twice
+from fatektool.jobs.programs.reading import ProgramReading, read_program, read_program_twice
 from fatektool.jobs.progress import Progress, no_progress
 from fatektool.program.archive import Backup, Source
 from fatektool.version import __version__
@@ -63,7 +63,7 @@ def backup(
         DataError: the header does not hold, or two passes differ.
     """
 
-    def check(reading: Reading) -> None:
+    def check(reading: ProgramReading) -> None:
         if not any_header:
             reading.program.require_header(
                 "run it again; if it stays so, --any-header keeps the image as it is, marked as such"
@@ -78,7 +78,7 @@ def backup(
     return backup_of(plc, reading)
 
 
-def backup_of(plc: Plc, reading: Reading) -> Backup:
+def backup_of(plc: Plc, reading: ProgramReading) -> Backup:
     """A program that was read just now as a backup."""
     return Backup(
         program=reading.program,

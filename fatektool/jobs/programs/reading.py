@@ -33,7 +33,7 @@ PAST_THE_END: Final = {0x2, 0xA}
 
 
 @dataclass(frozen=True, slots=True)
-class Reading:
+class ProgramReading:
     """A program that was read.
 
     Attributes:
@@ -52,7 +52,7 @@ def read_program(
     phase: str = "reading",
     progress: Progress = no_progress,
     status: DetailedStatus | None = None,
-) -> Reading:
+) -> ProgramReading:
     """Read 53 and all pages, once.
 
     Args:
@@ -74,7 +74,7 @@ def read_program(
             "the PLC's detailed status (53) tells a ladder size of 0 words: there is nothing to read",
             hint="check the model with 'fatektool status'",
         )
-    return Reading(status, Program(words, tuple(read_all_pages(plc, words, phase, progress))), 1)
+    return ProgramReading(status, Program(words, tuple(read_all_pages(plc, words, phase, progress))), 1)
 
 
 def read_all_pages(
@@ -122,8 +122,8 @@ def read_program_twice(
     progress: Progress = no_progress,
     *,
     phase: str = "reading",
-    after_first: Callable[[Reading], None] | None = None,
-) -> Reading:
+    after_first: Callable[[ProgramReading], None] | None = None,
+) -> ProgramReading:
     """Read 53 and all pages until two passes in a row agree.
 
     Args:
@@ -146,7 +146,7 @@ def read_program_twice(
         again = read_program(plc, f"{phase}, pass {number}", progress)
         difference = _difference(last, again)
         if difference is None:
-            return Reading(again.status, again.program, number)
+            return ProgramReading(again.status, again.program, number)
         if _trouble(plc) == before:
             raise DataError(
                 f"two passes over a clean line read different programs: {difference}",
@@ -159,7 +159,7 @@ def read_program_twice(
     )
 
 
-def _difference(a: Reading, b: Reading) -> str | None:
+def _difference(a: ProgramReading, b: ProgramReading) -> str | None:
     """What two passes differ in, in words."""
     if a.status.system != b.status.system:
         before, after = a.status.system.document(), b.status.system.document()

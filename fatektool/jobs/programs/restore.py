@@ -30,7 +30,7 @@ from fatektool.errors import (
 )
 from fatektool.jobs.programs.backup import backup_of
 from fatektool.jobs.programs.fit import model_warning, require_kin, require_size
-from fatektool.jobs.programs.reading import Reading, read_program, read_program_twice
+from fatektool.jobs.programs.reading import ProgramReading, read_program, read_program_twice
 from fatektool.jobs.programs.rewrite import Rewrite
 from fatektool.jobs.programs.safety import way_back
 from fatektool.jobs.progress import Progress, no_progress
@@ -174,7 +174,7 @@ def plan_restore(
     )
 
 
-def _read_present(plc: Plc, options: RestoreOptions, progress: Progress) -> Reading:
+def _read_present(plc: Plc, options: RestoreOptions, progress: Progress) -> ProgramReading:
     phase = "old program"
     if options.single_pass:
         return read_program(plc, phase, progress)

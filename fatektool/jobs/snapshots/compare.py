@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class ValueChange:
     """One value that differs. None stands for a value that could not be read, or a key that is not there.
 
     Attributes:
@@ -32,7 +32,7 @@ class Change:
 
 def compare_snapshots(
     a: Snapshot, b: Snapshot, *, ignore: Iterable[str] = (), tolerance: float = 0.0
-) -> list[Change]:
+) -> list[ValueChange]:
     """What differs, in the order of the first, then of the second.
 
     Args:
@@ -49,7 +49,7 @@ def compare_snapshots(
         one, other = a.values.get(key), b.values.get(key)
         absent = "a" if key not in a.values else "b" if key not in b.values else None
         if absent or not _alike(one, other, tolerance):
-            changes.append(Change(key, one, other, absent))
+            changes.append(ValueChange(key, one, other, absent))
     return changes
 
 

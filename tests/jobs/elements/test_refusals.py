@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from fatektool.errors import DataError, NoAnswer, PlcRefused
 from fatektool.jobs.elements.disabled import read_disabled
 from fatektool.jobs.elements.division import ROW, STEP
-from fatektool.jobs.elements.reads import Reading, read_elements
+from fatektool.jobs.elements.reads import ElementReading, read_elements
 from fatektool.jobs.elements.selection import parse_items
 from fatektool.jobs.elements.writes import write_elements
 from fatektool.jobs.snapshots.snapshot import parse_snapshot
@@ -64,7 +64,7 @@ def bound(asked: Sequence[int], holes: set[int]) -> int:
     return total
 
 
-def check_reading(reading: Reading, asked: Sequence[int], holes: set[int]) -> None:
+def check_reading(reading: ElementReading, asked: Sequence[int], holes: set[int]) -> None:
     """Nothing wrong is said, and nothing is lost that may not be."""
     errors = {element.address for element in reading.errors}
     left_out = {element.address for element in reading.not_asked}

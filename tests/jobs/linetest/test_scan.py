@@ -8,7 +8,7 @@ import pytest
 
 from fatektool.errors import LineError, TransportClosed, UsageError
 from fatektool.jobs.linetest.scan import scan
-from fatektool.jobs.linetest.scan_result import ScanResult, Setting, Station
+from fatektool.jobs.linetest.scan_result import ScanResult, ScanSetting, Station
 from fatektool.protocol.fatek.facon.codec import FACON
 from fatektool.protocol.line_settings import BAUDS
 from fatektool.simulator.build import build_simulation
@@ -69,7 +69,7 @@ def look(
     timeout_s: float = 0.1,
     retries: int = 3,
 ) -> ScanResult:
-    settings = [Setting(FACON, LineSettings(baud)) for baud in bauds or (9600,)]
+    settings = [ScanSetting(FACON, LineSettings(baud)) for baud in bauds or (9600,)]
     return scan(Adjustable(line), settings, stations, timeout_s=timeout_s, retries=retries)
 
 
@@ -161,7 +161,7 @@ def test_ctrl_c_gives_what_was_found_so_far() -> None:
 
     result = scan(
         Adjustable(Line({3, 7})),
-        [Setting(FACON, FACTORY)],
+        [ScanSetting(FACON, FACTORY)],
         range(1, 11),
         timeout_s=0.1,
         on_found=told.append,
@@ -173,7 +173,7 @@ def test_ctrl_c_gives_what_was_found_so_far() -> None:
 
 def test_it_ends_when_enough_were_found() -> None:
     line = Line({2, 3, 4})
-    result = scan(Adjustable(line), [Setting(FACON, FACTORY)], (1, 2, 3, 4), timeout_s=0.1, most=2)
+    result = scan(Adjustable(line), [ScanSetting(FACON, FACTORY)], (1, 2, 3, 4), timeout_s=0.1, most=2)
     assert [station for _, station in line.asked] == [1, 2, 3]
     assert len(result.found) == 2
 
@@ -182,7 +182,7 @@ def test_a_gateway_that_hangs_up_for_good_is_an_error() -> None:
     transport = Adjustable(Line({1}))
     transport.close()
     with pytest.raises(TransportClosed):
-        scan(transport, [Setting(FACON, FACTORY)], range(1, 11), timeout_s=0.1)
+        scan(transport, [ScanSetting(FACON, FACTORY)], range(1, 11), timeout_s=0.1)
 
 
 @pytest.mark.parametrize("stations", [(), (0,), (255,)])
@@ -198,7 +198,7 @@ def test_a_noisy_line_hides_nobody_and_invents_nobody(faults: list[str]) -> None
     simulation = build_simulation([2, 9, 200], faults=faults, baud=9600, seed=3)
     result = scan(
         MemoryTransport(simulation.line()),
-        [Setting(FACON, FACTORY)],
+        [ScanSetting(FACON, FACTORY)],
         range(1, 255),
         timeout_s=0.1,
         retries=8,
@@ -215,7 +215,7 @@ def test_a_port_that_answers_every_number_is_one_plc() -> None:
     told: list[Station] = []
     result = scan(
         MemoryTransport(simulation.line()),
-        [Setting(FACON, FACTORY)],
+        [ScanSetting(FACON, FACTORY)],
         range(1, 255),
         timeout_s=0.1,
         on_found=told.append,
@@ -231,7 +231,7 @@ def test_plcs_that_answer_alike_are_several_all_the_same(stations: set[int]) -> 
     told: list[int] = []
     result = scan(
         Adjustable(Line(stations)),
-        [Setting(FACON, FACTORY)],
+        [ScanSetting(FACON, FACTORY)],
         range(1, 11),
         timeout_s=0.1,
         on_found=lambda found: told.append(found.station),
@@ -268,7 +268,7 @@ class Picky(Adjustable):
 
 def test_a_speed_that_the_port_does_not_take_is_left_out_and_told() -> None:
     line = Line({1}, baud=9600)
-    settings = [Setting(FACON, LineSettings(baud)) for baud in (921600, 9600, 614400)]
+    settings = [ScanSetting(FACON, LineSettings(baud)) for baud in (921600, 9600, 614400)]
     result = scan(Picky(line), settings, [1, 2], timeout_s=0.1)
     assert [found.station for found in result.found] == [1]
     assert [setting.line.baud for setting in result.refused] == [921600, 614400]
@@ -276,13 +276,13 @@ def test_a_speed_that_the_port_does_not_take_is_left_out_and_told() -> None:
 
 
 def test_a_port_that_takes_nothing_is_an_error() -> None:
-    settings = [Setting(FACON, LineSettings(baud)) for baud in (921600, 614400, 307200, 230400, 153600)]
+    settings = [ScanSetting(FACON, LineSettings(baud)) for baud in (921600, 614400, 307200, 230400, 153600)]
     with pytest.raises(LineError, match="does not take"):
         scan(Picky(Line({1})), settings, [1], timeout_s=0.1)
 
 
 def test_it_ends_when_its_time_is_over() -> None:
-    settings = [Setting(FACON, LineSettings(baud)) for baud in BAUDS]
+    settings = [ScanSetting(FACON, LineSettings(baud)) for baud in BAUDS]
     transport = Adjustable(Line(set()))
     result = scan(transport, settings, range(1, 255), timeout_s=0.5, longest_s=10.0)
     assert result.out_of_time

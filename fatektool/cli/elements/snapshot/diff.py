@@ -11,7 +11,7 @@ from fatektool.cli.elements.documents import snapshot_diff_document
 from fatektool.cli.elements.values import shown
 from fatektool.cli.shared.options import PATH, voice_options
 from fatektool.errors import UsageError
-from fatektool.jobs.snapshots.compare import Change, compare_snapshots
+from fatektool.jobs.snapshots.compare import ValueChange, compare_snapshots
 from fatektool.jobs.snapshots.snapshot import load_snapshot
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def diff_command(a: Path, b: Path, voice: Voice, *, ignore: tuple[str, ...], tol
     return 1 if changes else 0
 
 
-def _change_lines(changes: list[Change]) -> Iterator[str]:
+def _change_lines(changes: list[ValueChange]) -> Iterator[str]:
     if not changes:
         yield "same"
     width = max((len(change.key) for change in changes), default=0)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from fatektool.jobs.linetest.finding import Finding
     from fatektool.jobs.linetest.loopback.result import LoopbackResult, Tally
     from fatektool.jobs.linetest.raw_frame import RawFrame
-    from fatektool.jobs.linetest.scan_result import ScanResult, Setting, Station, Unclear
+    from fatektool.jobs.linetest.scan_result import ScanResult, ScanSetting, Station, Unclear
     from fatektool.transport.discovery import Answer
 
 
@@ -173,7 +173,7 @@ def _unclear(place: Unclear, *, serial: bool) -> dict[str, Any]:
     }
 
 
-def _setting(setting: Setting, *, serial: bool) -> dict[str, Any]:
+def _setting(setting: ScanSetting, *, serial: bool) -> dict[str, Any]:
     return {
         "protocol": setting.codec.name,
         "baud": setting.line.baud if serial else None,

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from fatektool.cli.shared.connection import Connection
     from fatektool.client import Plc
     from fatektool.jobs.elements.writes import NotTaken
-    from fatektool.jobs.plcports.tables import Change, WritePlan
+    from fatektool.jobs.plcports.tables import RegisterChange, WritePlan
 
 
 @click.group("modem", epilog="Example: fatektool link modem show -p /dev/ttyUSB0")
@@ -153,7 +153,7 @@ def _rows(report: ModemReport) -> Iterator[tuple[str, object]]:
         yield name, "-" if value is None else value
 
 
-def _change_line(change: Change) -> str:
+def _change_line(change: RegisterChange) -> str:
     bits = change.element.kind.bits
     return f"{change.element}  {raw_text(change.before, bits)} -> {raw_text(change.after, bits)}"
 
