@@ -85,7 +85,7 @@ def test_the_page_gives_what_it_shows() -> None:
 
 
 def test_the_page_names_every_key_and_option(cli: Cli) -> None:
-    rows = PAGE.split("| key | means |")[1].split("\n\n")[0]
+    rows = PAGE.split("| key | meaning |")[1].split("\n\n")[0]
     (fault,) = parse_inventory(b'[plc.p]\ntarget = "sim:"\nqqq = 1\n', Path("x")).faults
     keys = fault.message.split("expected one of ")[1].split(", ")
     assert sorted(re.findall(r"`(\w+)`", re.sub(r"\|[^|]*\|$", "|", rows, flags=re.MULTILINE))) == keys
