@@ -21,7 +21,7 @@
     │   ├── PlcBusy                        it says that it is at work: to be asked again
     │   └── PlcNotReady                    RUN where STOP is needed, ROM pack fitted
     ├── DataError                       5  a file or program that does not hold
-    └── RestoreIncomplete               6  the PLC's program is neither old nor new
+    └── RestoreIncomplete               6  a write ended half way: the PLC holds neither old nor new
 
 A message is one line that says what, where, expected, got and the next step. ``details`` holds the
 same as values for JSON, and ``kind`` is the class's name in snake case.
@@ -30,7 +30,10 @@ same as values for JSON, and ``kind`` is the class's name in snake case.
 from __future__ import annotations
 
 import re
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 
 class FatektoolError(Exception):
@@ -208,9 +211,20 @@ class DataError(FatektoolError):
 
 
 class RestoreIncomplete(FatektoolError):
-    """The PLC's program is neither the old one nor the new one."""
+    """A write that can be undone ended half way: the PLC holds neither what it held nor what it should.
+
+    Attributes:
+        headline: what did not complete.
+        mode: the mode that the PLC is in now, and what must not be done; empty if it was left alone.
+        states: what the PLC holds: the place, such as ``page 0-3``, and what is there.
+        saved: the file with what the PLC held before; None if it was not saved.
+    """
 
     exit_code = 6
+    headline = ""
+    mode = ""
+    states: Sequence[tuple[str, str]] = ()
+    saved: str | None = None
 
 
 class FileWarning(UserWarning):

@@ -75,7 +75,7 @@ def test_restore_with_questions(tmp_path: Path) -> None:
     other = backup_of_seed(tmp_path, 2)
     refused = run(tmp_path, sys.executable, script, "sim:demo.state", str(other))
     assert refused.returncode == 2
-    assert "not agreed to" in refused.stderr
+    assert "Aborted" in refused.stderr
     same = backup_of_seed(tmp_path, 1)
     done = run(tmp_path, sys.executable, script, "sim:demo.state", str(same))
     assert done.returncode == 0, done.stderr

@@ -13,7 +13,7 @@ JOBS: Final[dict[str, dict[str, Subcommand]]] = {
     "Programs": {
         "backup": Subcommand("programs.backup", "Read the PLC's program into a file, twice, checked."),
         "verify": Subcommand("programs.verify", "Compare the PLC's program with a backup."),
-        "restore": Subcommand("programs.restore", "Put a backup's program into the PLC, with a way back."),
+        "restore": Subcommand("programs.restore", "Write a backup's program into the PLC; can be undone."),
         "inspect": Subcommand("programs.inspect", "Show and check what a backup holds; no PLC."),
         "listing": Subcommand("programs.listing", "List a program in the vendor's mnemonics; no PLC."),
         "xref": Subcommand("programs.xref", "Show who reads and who writes each element; no PLC."),

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from fatektool.errors import PlcRefused
 from fatektool.files.times import utc
-from fatektool.protocol.commands import ReadDetailedStatus
+from fatektool.protocol.commands import Command, ReadDetailedStatus
 
 if TYPE_CHECKING:
     from fatektool.client import Plc
@@ -58,3 +59,18 @@ def read_status(plc: Plc, *, brief: bool = False) -> StatusReport:
     short = plc.brief_status()
     detailed = None if brief else plc.link.ask(ReadDetailedStatus())
     return StatusReport(utc(), plc.target, plc.link.station, plc.link.codec.name, short, detailed)
+
+
+def brief_or_none(plc: Plc) -> BriefStatus | None:
+    """The answer to 40, which nobody asked for: None where the protocol lacks it or the PLC refuses it.
+
+    Raises:
+        LineError: no answer.
+    """
+    if Command.BRIEF_STATUS not in plc.link.codec.commands:
+        return None
+    try:
+        return plc.brief_status()
+    except PlcRefused as error:
+        plc.link.note(f"RUN or STOP is not known: {error.message}")
+        return None

@@ -204,7 +204,7 @@ ERRORS = r"""
 4 run -p PLC --yes [ladder_checksum_error]
     error 5.*restore a good backup
 4 restore new.json -p PLC --run --yes [id_differs]
-    read back and proven, but the PLC does not RUN
+    read back and verified, but the PLC does not RUN
 5 inspect damaged.json
     damaged.json: page 3: expected 256 hex digits
 5 verify damaged.json -p PLC

@@ -20,9 +20,10 @@ from fatektool.jobs.programs.backup import backup
 from fatektool.jobs.programs.reading import MOST_PASSES
 from fatektool.jobs.programs.restore import restore
 from fatektool.jobs.programs.verify import verify
-from fatektool.jobs.snapshots.apply import apply_plan, plan_apply
+from fatektool.jobs.snapshots.apply import plan_apply
 from fatektool.jobs.snapshots.snapshot import raw_of, take_snapshot
 from fatektool.jobs.snapshots.spec import items_of
+from fatektool.jobs.snapshots.write_values import write_values
 from fatektool.jobs.status import read_status
 from fatektool.program.archive import load_backup
 from tests.program.samples import backup as backup_of
@@ -144,7 +145,7 @@ def tell_apply(rig: Rig, _: Path) -> int:
         assert {element: raw for _, element, raw in plan.changes} == {
             element: value for element, value in after.items() if value != before[element]
         }
-        failed = apply_plan(rig.plc, plan, None)
+        failed = write_values(rig.plc, plan.values).not_taken
     except FatektoolError as error:
         _old_or_new(rig, before, after if error.exit_code == 6 else before)
         raise

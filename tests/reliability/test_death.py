@@ -236,8 +236,10 @@ def test_the_power_goes_at_a_page_that_a_restore_writes(
             assert warning.startswith("warning: new.json is from station ")
             assert lines[0] == "fatektool: the restore did not complete"
             assert [f"page {write - 1}", "uncertain"] in [re.split(" {2,}", line.strip()) for line in lines]
-            assert f"  old program  {safety}" in [line.replace(safety.name, str(safety)) for line in lines]
-            assert lines[1].endswith("must not RUN")
+            assert f"  previous program  saved in {safety}" in [
+                line.replace(safety.name, str(safety)) for line in lines
+            ]
+            assert lines[2].endswith("do not switch it to RUN")
             assert "--changed-only" in command
         door.simulation.power_on()
         again = cli(*words)

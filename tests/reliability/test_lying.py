@@ -134,7 +134,7 @@ def test_a_run_that_does_not_come_behind_a_restore(place: Path, cli: Cli, door: 
     done = cli("restore", "new.json", "--run", "--yes", "-q", "-p", door.target)
     assert done.code == 4
     line = one_line(done.err)
-    assert "read back and proven, but the PLC does not RUN: the PLC acknowledged RUN" in line
+    assert "read back and verified, but the PLC does not RUN: the PLC acknowledged RUN" in line
     assert "see 'fatektool status'" in line
     assert door.pages == NEW.pages
 
@@ -213,7 +213,7 @@ def test_a_plc_that_is_exchanged_between_two_written_pages(
     assert bench.pages == NEW.pages
     (warning,) = result.warnings
     assert warning.startswith("page 1")
-    assert "held neither the old nor the new program: was the PLC exchanged" in warning
+    assert "held neither the previous nor the new program: was the PLC exchanged" in warning
 
 
 def test_the_warning_is_told(place: Path, cli: Cli, door: Door) -> None:

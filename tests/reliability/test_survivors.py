@@ -69,7 +69,7 @@ def test_a_plc_that_stores_something_else_is_not_called_unchanged(tmp_path: Path
     bench.tap.after = garble
     error = unfinished(bench, tmp_path)
     assert "acknowledged page 0-7, but holds something else there" in error.message
-    assert "page 0-7 is uncertain" in error.message
+    assert "page 0-7: uncertain" in error.message
     assert error.details["pages_uncertain"] == list(range(PAGES))
 
 
@@ -85,7 +85,7 @@ def test_a_page_whose_second_write_is_refused_is_what_it_was(tmp_path: Path) -> 
     error = unfinished(bench, tmp_path)
     assert error.details["pages_old"] == [4, 6]
     assert error.details["pages_uncertain"] == error.details["pages_unread"] == []
-    assert "page 0-3, 5, 7 holds the new program, page 4, 6 holds the old program; " in error.message
+    assert "page 0-3, 5, 7: the new program; page 4, 6: the previous program; " in error.message
     assert [page for page in range(PAGES) if bench.pages[page] != NEW.pages[page]] == [4, 6]
 
 
@@ -102,7 +102,7 @@ def test_a_foreign_page_whose_second_write_is_refused_stays_uncertain(tmp_path: 
     bench.tap.after, bench.tap.before = garble, refuse
     error = unfinished(bench, tmp_path)
     assert error.details["pages_uncertain"] == [4]
-    assert "page 4 is uncertain" in error.message
+    assert "page 4: uncertain" in error.message
 
 
 def test_a_page_that_was_written_again_and_not_read_back_is_called_so(tmp_path: Path) -> None:
@@ -118,9 +118,7 @@ def test_a_page_that_was_written_again_and_not_read_back_is_called_so(tmp_path: 
     error = unfinished(bench, tmp_path)
     assert error.details["pages_written"] == list(range(PAGES))
     assert error.details["pages_unread"] == [5]
-    assert "(interrupted): page 0-4, 6-7 holds the new program, page 5 was written and not read back" in str(
-        error
-    )
+    assert "(interrupted): page 0-4, 6-7: the new program; page 5: written but not read back" in str(error)
 
 
 def test_acknowledged_pages_are_not_called_new_before_they_are_read(tmp_path: Path) -> None:
@@ -129,8 +127,11 @@ def test_acknowledged_pages_are_not_called_new_before_they_are_read(tmp_path: Pa
     error = unfinished(bench, tmp_path)
     assert error.details["pages_written"] == error.details["pages_unread"] == [0, 1, 2, 3, 4]
     assert bench.pages[2] == OLD.pages[2]
-    assert "holds the new program" not in error.message
-    assert "page 5 is uncertain, page 6-7 holds the old program, page 0-4 was written and" in error.message
+    assert "the new program" not in error.message
+    assert (
+        "page 0-4: written but not read back; page 5: uncertain; page 6-7: the previous program"
+        in error.message
+    )
 
 
 def test_what_was_rolled_back_says_what_to_do_about_the_cause(tmp_path: Path) -> None:

@@ -72,8 +72,8 @@ def check_command(
     """Check a PLC as a monitoring plugin: exit 0 OK, 1 WARNING, 2 CRITICAL, 3 UNKNOWN, and one line.
 
     Looks at whether it answers, its mode, battery, ladder checksum, watchdog and emergency stop; whether a
-    restore into it was left unfinished; whether its program is the reference; whether there is a good
-    backup, and how old.
+    restore or another write into it was left unfinished; whether its program is the reference; whether there
+    is a good backup, and how old.
     """
     if max_age is not None and backup is None:
         raise UsageError("--max-age goes with --backup FILE")

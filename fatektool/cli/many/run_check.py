@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from fatektool.cli.many.documents import check_document
 from fatektool.cli.many.outcome import JobResult
-from fatektool.cli.shared.unfinished import unfinished_document
+from fatektool.cli.shared.unfinished import unfinished
 from fatektool.jobs.check.plc import check_plc
 from fatektool.jobs.progress import Progress, no_progress
 
@@ -40,15 +40,10 @@ def run_check(
         shared: keeps the line open for the next PLC on it.
         progress: told of each page.
     """
-
-    def unfinished_since() -> str | None:
-        record = unfinished_document(connection.address.target, connection.address.station)
-        return None if record is None else record["time"]
-
     return check_plc(
         plan,
         partial(connection.open, voice, limit=limit, shared=shared),
-        unfinished=unfinished_since,
+        unfinished=partial(unfinished, connection.address.target, connection.address.station),
         now=datetime.now(UTC),
         progress=progress,
     )

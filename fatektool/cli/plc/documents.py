@@ -14,9 +14,7 @@ if TYPE_CHECKING:
 
 def status_document(report: StatusReport) -> dict[str, Any]:
     """``fatektool.status/1``."""
-    from fatektool.cli.shared.unfinished import (
-        unfinished_document,  # loaded with the connection, if there is one
-    )
+    from fatektool.cli.shared.unfinished import unfinished_documents  # loaded with the connection
 
     return {
         "schema": "fatektool.status/1",
@@ -36,7 +34,7 @@ def status_document(report: StatusReport) -> dict[str, Any]:
             "brief": report.brief.to_bytes().hex().upper(),
             "detailed": None if report.detailed is None else report.detailed.raw.hex().upper(),
         },
-        "unfinished_restore": unfinished_document(report.target, report.station),
+        **unfinished_documents(report.target, report.station),
     }
 
 

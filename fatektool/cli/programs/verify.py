@@ -12,7 +12,7 @@ from fatektool.cli.programs.program_files import comments_for, comments_options,
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.options import PATH
 from fatektool.cli.shared.report import report_option, write_report
-from fatektool.cli.shared.unfinished import forget, warn_of_unfinished
+from fatektool.cli.shared.unfinished import forget, record_of, warn_of_unfinished
 from fatektool.jobs.programs.verify import compare_with_plc
 from fatektool.protocol.commands import Command
 
@@ -50,9 +50,8 @@ def verify_command(
         document = verify_document(plc, result, texts)
     found = result.found
     if found.same:
-        forget(connection.address.target, connection.address.station, voice)
-    else:
-        warn_of_unfinished(connection.address.target, connection.address.station, voice)
+        forget(record_of(connection.address.target, connection.address.station), voice)
+    warn_of_unfinished(connection.address.target, connection.address.station, voice)
     count = len(found.a.pages)
     same = f"same: the PLC's program is the one in {file}, {count} pages"
     if found.pages.b_has_more:

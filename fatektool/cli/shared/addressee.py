@@ -20,15 +20,14 @@ from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.cli.shared.output import table
 from fatektool.cli.shared.unfinished import line_name
-from fatektool.errors import LineError, PlcError, UsageError
-from fatektool.protocol.commands import Command
+from fatektool.errors import LineError, UsageError
+from fatektool.jobs.status import brief_or_none
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from fatektool.cli.shared.output import Voice
     from fatektool.client import Plc
-    from fatektool.jobs.plcports.tables import WritePlan
     from fatektool.protocol.status import BriefStatus
 
 _SHORT_S: Final = 90
@@ -133,14 +132,6 @@ class Pace:
         return spent(seconds) if seconds < 1 else f"about {spent(seconds)}"
 
 
-def time_row(plc: Plc, plan: WritePlan, pace: Pace) -> tuple[str, object]:
-    """How long it takes to write a table or settings, and to read them back."""
-    from fatektool.planner import plan_writes
-
-    requests = plan_writes([(change.element, change.after) for change in plan.changes], plc.link.codec)
-    return "time", pace.time_of(2 * len(requests))
-
-
 def spent(seconds: float) -> str:
     """A time as people say it."""
     if seconds < 1:
@@ -150,16 +141,16 @@ def spent(seconds: float) -> str:
 
 def look(plc: Plc) -> Addressee:
     """Ask a PLC what it is and how it is (40), where its protocol has that; what does not come is None."""
-    if Command.BRIEF_STATUS not in plc.link.codec.commands:
-        return Addressee(plc.target, plc.link.station)
     try:
-        return with_status(plc, plc.brief_status())
-    except (LineError, PlcError):
+        return with_status(plc, brief_or_none(plc))
+    except LineError:
+        return with_status(plc, None)
+
+
+def with_status(plc: Plc, brief: BriefStatus | None) -> Addressee:
+    """The PLC with what it answered to 40; None for no answer."""
+    if brief is None:
         return Addressee(plc.target, plc.link.station)
-
-
-def with_status(plc: Plc, brief: BriefStatus) -> Addressee:
-    """The PLC with what it said to 40."""
     model = brief.model
     if model is None and not brief.m_series:
         model = f"code {brief.status2:02X}"
@@ -186,8 +177,8 @@ def agree(
         unchanged: what is said if the answer is no.
 
     Raises:
-        UsageError: not agreed to, or nobody to ask.
-        KeyboardInterrupt: Ctrl-C at the question; bears ``unchanged``.
+        UsageError: not agreed to, or there is nobody to ask.
+        KeyboardInterrupt: Ctrl-C at the question; has ``unchanged``.
     """
     voice.require_answer(yes=yes)
     for line in (*table(rows), *lines):
@@ -197,4 +188,4 @@ def agree(
     except KeyboardInterrupt:
         raise KeyboardInterrupt(unchanged) from None
     if not agreed:
-        raise UsageError(f"not agreed to: {unchanged}")
+        raise UsageError(f"Aborted. {unchanged[:1].upper()}{unchanged[1:]}.")

@@ -1,9 +1,14 @@
-"""Restores that did not complete, and who is warned of them.
+"""The records of writes that did not complete, and the warning of them.
 
-A PLC's record lies in ``FATEKTOOL_STATE_DIR``, else in the user's state folder: ``fatektool`` in
+A record is a file in ``FATEKTOOL_STATE_DIR``, else in the user's state folder: ``fatektool`` in
 ``$XDG_STATE_HOME``, ``~/.local/state``, on Windows ``%LOCALAPPDATA%``. Its name is made of target and
-station, and two names of one device are one. Each user has records of their own, unless the variable names
-one folder for all. Paths are text here: each command that talks to a PLC looks for one, and pathlib is slow.
+station, and two names of one device are one::
+
+    unfinished-dev-ttyUSB0-st01-1a2b3c4d.json             a restore
+    unfinished-dev-ttyUSB0-st01-1a2b3c4d-5e6f7a8b.json    a write of values, one for each file
+
+Each user has records of their own, unless the variable names one folder for all. Paths are text here: each
+command that talks to a PLC looks for one, and pathlib is slow.
 """
 
 from __future__ import annotations
@@ -11,24 +16,37 @@ from __future__ import annotations
 import os
 import re
 from binascii import crc32
-from typing import TYPE_CHECKING, Any, TypeGuard
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fatektool.errors import FatektoolError
 from fatektool.transport.target import Target, TargetKind
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
     from fatektool.cli.shared.output import Voice
-    from fatektool.jobs.programs.unfinished import Mark, Unfinished
+    from fatektool.jobs.write_back.record import Unfinished
 
 
-def record_of(target: str, station: int) -> str | None:
-    """The file that holds the record of a PLC; None for one that is new each time (``sim:``)."""
+def record_of(target: str, station: int, *about: str) -> str | None:
+    """The file for the record of a write into this PLC; None for a PLC that is new each time (``sim:``).
+
+    Args:
+        target: as the user named it.
+        station: the PLC's.
+        about: what distinguishes a write of values from another one: command, file …; none for a restore.
+    """
     line = line_name(target)
     if line == "sim:":
         return None
     readable = re.sub(r"[^A-Za-z0-9.]+", "-", line)[-60:].strip("-")
-    told_apart = crc32(line.encode(errors="surrogateescape"))
-    return f"{state_folder()}/unfinished-{readable}-st{station:02}-{told_apart:08x}.json"
+    which = "-".join(_number(text) for text in (line, "\0".join(about)) if text)
+    return f"{state_folder()}/unfinished-{readable}-st{station:02}-{which}.json"
+
+
+def _number(text: str) -> str:
+    return f"{crc32(text.encode(errors='surrogateescape')):08x}"
 
 
 def line_name(target: str) -> str:
@@ -50,7 +68,7 @@ def line_name(target: str) -> str:
 
 
 def state_folder() -> str:
-    """Where records lie."""
+    """The folder of the records."""
     named = os.environ.get("FATEKTOOL_STATE_DIR")
     if named:
         return named
@@ -61,46 +79,36 @@ def state_folder() -> str:
     return f"{base}/fatektool"
 
 
-def warn_of_unfinished(target: str, station: int, voice: Voice) -> None:
-    """Warn of a restore into this PLC that did not complete, if there is one."""
+class Found(NamedTuple):
+    """A record on disk, and what it says; None if it cannot be read."""
+
+    path: str
+    record: Unfinished | None
+
+
+def records_of(target: str, station: int) -> Iterator[Found]:
+    """The records of this PLC, that of a restore first."""
     path = record_of(target, station)
-    if not _is_there(path):
+    if path is None:
         return
-    found = _load(path)
-    if found is None:
-        voice.warn(f"this PLC's restore is unfinished, and its record cannot be read: {path}")
+    folder, _, name = path.rpartition("/")
+    stem = name.removesuffix(".json")
+    try:
+        names = sorted(os.listdir(folder))  # noqa: PTH208
+    except OSError:  # no folder, no record
         return
-    voice.warn("\n".join(_lines(found, path)))
+    of_values = [each for each in names if each.startswith(f"{stem}-") and each.endswith(".json")]
+    for each in [name] * (name in names) + of_values:
+        yield Found(f"{folder}/{each}", load(f"{folder}/{each}"))
 
 
-def unfinished_document(target: str, station: int) -> dict[str, Any] | None:
-    """The record for JSON; None if there is none that can be read."""
-    path = record_of(target, station)
-    found = _load(path) if _is_there(path) else None
-    return None if found is None else found.document()
-
-
-def _lines(found: Unfinished, path: str) -> list[str]:
-    """The record for a person. It names a port, behind which another PLC may be by now."""
-    return [
-        "this PLC's restore is unfinished: it must not RUN",
-        f"  begun        {found.time}",
-        f"  file         {found.file}",
-        f"  old program  {found.safety_backup or 'not saved'}",
-        f"  other PLC?   if another one is connected now, do not finish it here, and delete {path}",
-        "  to finish it:",
-        found.command,
-    ]
-
-
-def _is_there(path: str | None) -> TypeGuard[str]:
-    return path is not None and os.path.exists(path)  # noqa: PTH110
-
-
-def _load(path: str) -> Unfinished | None:
+def load(path: str | None) -> Unfinished | None:
+    """A record; None if there is none that can be read."""
+    if path is None or not os.path.exists(path):  # noqa: PTH110
+        return None
     from pathlib import Path
 
-    from fatektool.jobs.programs.unfinished import Unfinished
+    from fatektool.jobs.write_back.record import Unfinished
 
     try:
         return Unfinished.load(Path(path))
@@ -108,9 +116,68 @@ def _load(path: str) -> Unfinished | None:
         return None
 
 
-def forget(target: str, station: int, voice: Voice) -> None:
-    """Remove the record: the PLC holds a whole program."""
-    path = record_of(target, station)
+def warn_of_unfinished(target: str, station: int, voice: Voice, *, but: str | None = None) -> None:
+    """Warn of writes into this PLC that did not complete.
+
+    Args:
+        target: as the user named it.
+        station: the PLC's.
+        voice: warns.
+        but: the record of the write that is being done now.
+    """
+    for path, record in records_of(target, station):
+        if path == but:
+            continue
+        if record is None:
+            voice.warn(f"a write into this PLC did not complete, and its record cannot be read: {path}")
+        else:
+            voice.warn("\n".join(_lines(record, path)))
+
+
+def unfinished(target: str, station: int) -> list[Unfinished]:
+    """The records of this PLC that can be read."""
+    return [record for _, record in records_of(target, station) if record is not None]
+
+
+def unfinished_documents(target: str, station: int) -> dict[str, Any]:
+    """The same for JSON: a restore, or null, and writes of values."""
+    restore, writes = None, []
+    for record in unfinished(target, station):
+        found = record.document()
+        if "job" not in found:
+            restore = found
+        else:
+            of_values = {name: found[name] for name in ("job", "time", "file", "command")}
+            writes.append(of_values | {"safety_snapshot": record.safety_backup})
+    return {"unfinished_restore": restore, "unfinished_writes": writes}
+
+
+def _lines(record: Unfinished, path: str) -> Iterator[str]:
+    """A record for a person. It names a port, to which another PLC may be connected by now."""
+    from fatektool.cli.shared.output import table
+    from fatektool.jobs.write_back.record import RESTORE
+
+    program = record.job == RESTORE
+    if program:
+        yield "a restore into this PLC did not complete: do not switch it to RUN"
+    else:
+        yield f"'{record.job}' into this PLC did not complete: some of the values may be written"
+    rows: list[tuple[str, object]] = [("started", record.time)]
+    if record.file is not None:
+        rows.append(("file", record.file))
+    saved = f"saved in {record.safety_backup}" if record.safety_backup else "not saved"
+    rows += [
+        (f"previous {'program' if program else 'values'}", saved),
+        ("other PLC?", f"if another one is connected now, do not finish it here, and delete {path}"),
+    ]
+    for row in table(rows):
+        yield f"  {row}"
+    yield "  to finish it, run:"
+    yield record.command
+
+
+def forget(path: str | None, voice: Voice) -> None:
+    """Remove a record: the write is complete, or undone."""
     if path is None:
         return
     try:
@@ -118,54 +185,59 @@ def forget(target: str, station: int, voice: Voice) -> None:
     except FileNotFoundError:
         return
     except OSError as error:
-        voice.warn(f"the record of an unfinished restore stays: cannot remove {path}: {error.strerror}")
+        voice.warn(
+            f"the record of a write that did not complete stays: cannot remove {path}: {error.strerror}"
+        )
         return
-    voice.detail(f"the record of an unfinished restore is removed: {path}")
+    voice.detail(f"the record of a write that did not complete is removed: {path}")
 
 
-class RestoreMark:
-    """The record of the restore that is being done.
+def forget_those_undone(target: str, station: int, copy: Path, voice: Voice) -> None:
+    """Remove the records of writes of values whose safety copy is in the PLC again."""
+    for path, record in records_of(target, station):
+        if record is not None and record.safety_backup == str(copy.absolute()):
+            forget(path, voice)
+
+
+class RecordMark:
+    """The record of the write that is being done.
 
     Args:
-        record: what it says.
-        voice: is told what cannot be written.
-        way_back: takes note too.
+        path: its file; None for none.
+        record: what it says, but for the safety copy.
+        voice: warns if it cannot be written.
     """
 
-    def __init__(self, record: Unfinished, voice: Voice, way_back: Mark) -> None:
+    def __init__(self, path: str | None, record: Unfinished, voice: Voice) -> None:
+        self._path = path
         self._record = record
         self._voice = voice
-        self._way_back = way_back
         self._before: Unfinished | None = None
 
-    def begin(self) -> None:
-        """Write the record. The way back of a restore that did not complete before this one is kept in it."""
+    def begin(self, safety_copy: Path | None) -> None:
+        """Write the record; it keeps the safety copy that an earlier record names."""
         from dataclasses import replace
 
-        self._way_back.begin()
-        path = record_of(self._record.target, self._record.station)
-        self._before = _load(path) if _is_there(path) else None
-        record = self._record
+        self._before = load(self._path)
+        copy = None if safety_copy is None else str(safety_copy.absolute())
         if self._before is not None and self._before.safety_backup is not None:
-            record = replace(record, safety_backup=self._before.safety_backup)
-        self._save(record)
+            copy = self._before.safety_backup
+        self._save(replace(self._record, safety_backup=copy))
 
-    def end(self, *, proven: bool) -> None:
-        """Remove it; or put the one back that was there, if what it tells of is as it was."""
-        self._way_back.end(proven=proven)
-        if proven or self._before is None:
-            forget(self._record.target, self._record.station, self._voice)
+    def end(self, *, complete: bool) -> None:
+        """Remove it; or put the one back that was there before, if the PLC is as it was."""
+        if complete or self._before is None:
+            forget(self._path, self._voice)
         else:
             self._save(self._before)
 
     def _save(self, record: Unfinished) -> None:
         from pathlib import Path
 
-        path = record_of(self._record.target, self._record.station)
-        if path is None:
+        if self._path is None:
             return
         try:
-            record.save(Path(path))
+            record.save(Path(self._path))
         except (OSError, FatektoolError) as error:
-            why = error.message if isinstance(error, FatektoolError) else f"{path}: {error.strerror}"
-            self._voice.warn(f"no record of this restore, should it not complete: {why}")
+            why = error.message if isinstance(error, FatektoolError) else f"{self._path}: {error.strerror}"
+            self._voice.warn(f"no record of this write, should it not complete: {why}")

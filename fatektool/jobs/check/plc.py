@@ -10,6 +10,7 @@ watchdog               CRITICAL    the same
 battery                WARNING     the same
 emergency stop         WARNING     the same: somebody pressed it, the PLC itself is well
 restore                CRITICAL    none into this PLC was left unfinished, as far as this user's records say
+write of values        WARNING     the same: some values are the previous ones, others new
 program                CRITICAL    word for word that of the reference; UNKNOWN if either cannot be read
 backup                 CRITICAL    the last one can be read, and has a program in it
 its age                WARNING     not above the limit, not of the future
@@ -30,15 +31,17 @@ from fatektool.jobs.check.result import CheckResult, State
 from fatektool.jobs.programs.safekeeping import age_s, require_ladder
 from fatektool.jobs.programs.verify import verify_file
 from fatektool.jobs.progress import Progress, no_progress
+from fatektool.jobs.write_back.record import RESTORE
 from fatektool.program.archive import load_backup
 from fatektool.project.program_file import load_program
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
     from datetime import datetime
     from pathlib import Path
 
     from fatektool.client import Plc
+    from fatektool.jobs.write_back.record import Unfinished
     from fatektool.project.program_file import ProgramFile
 
 _CLOCKS_APART_S: Final = 3600
@@ -65,7 +68,7 @@ def check_plc(
     plan: CheckPlan,
     connect: Callable[[], Plc],
     *,
-    unfinished: Callable[[], str | None],
+    unfinished: Callable[[], Iterable[Unfinished]],
     now: datetime,
     progress: Progress = no_progress,
 ) -> CheckResult:
@@ -74,7 +77,7 @@ def check_plc(
     Args:
         plan: what is checked.
         connect: opens the line; what fails there is a fact too.
-        unfinished: since when a restore into this PLC is unfinished; None if there is none.
+        unfinished: gives the writes into this PLC that did not complete.
         now: the present.
         progress: told of each page.
     """
@@ -84,9 +87,12 @@ def check_plc(
             _check_plc(plc, found, expect=plan.expect, reference=plan.reference, progress=progress)
     except FatektoolError as error:
         found.fail(error)
-    since = unfinished()
-    if since is not None and found.differs is not False:  # the reference's program is whole
-        found.add(State.CRITICAL, f"restore UNFINISHED since {since}: it must not RUN")
+    for write in unfinished():
+        words = f"{write.job} UNFINISHED since {write.time}"
+        if write.job != RESTORE:
+            found.add(State.WARNING, words)
+        elif found.differs is not False:  # the reference's program is whole
+            found.add(State.CRITICAL, f"{words}: do not switch it to RUN")
     if plan.backup is not None:
         check_backup(plan.backup, found, max_age_s=plan.max_age_s, now=now)
     return found

@@ -214,7 +214,7 @@ def turnaround(plc: Plc) -> float:
     return turnaround_bytes(TYPICAL_TURNAROUND_S, plc.link.byte_time_s)
 
 
-def _parts(request: Request[Any]) -> Iterator[Element]:
+def parts_of(request: Request[Any]) -> Iterator[Element]:
     """The elements that a request reads or writes."""
     match request:
         case ReadMixed(elements):
@@ -231,7 +231,7 @@ def by_request(elements: Sequence[Element], requests: Sequence[Request[Any]]) ->
     """Elements by the request that they are in; what is in none comes last."""
     owner: dict[Atom, int] = {}
     for number, request in enumerate(requests):
-        for part in _parts(request):
+        for part in parts_of(request):
             owner |= dict.fromkeys(atoms_of(part), number)
     groups: dict[int, list[Element]] = {}
     for element in elements:

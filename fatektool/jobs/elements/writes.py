@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fatektool.errors import LineError, PlcRefused, RestoreIncomplete, UsageError
+from fatektool.errors import PlcRefused, UsageError
 from fatektool.jobs.elements.disabled import read_disabled
 from fatektool.jobs.elements.division import Division, Refusals
-from fatektool.jobs.elements.reads import by_request, named, read_elements, turnaround
+from fatektool.jobs.elements.ledger import Ledger
+from fatektool.jobs.elements.reads import by_request, named, parts_of, read_elements, turnaround
 from fatektool.jobs.elements.selection import overlapping
 from fatektool.planner import plan_writes
 from fatektool.planner.atoms import atoms_of
@@ -58,12 +59,15 @@ class NotTaken:
         return f"did not take: expected {wanted}: {self.reason}"
 
 
-def write_elements(plc: Plc, items: Sequence[tuple[Element, int]]) -> list[NotTaken]:
-    """Write elements of any kind, read all back, and tell what did not take.
+def write_elements(
+    plc: Plc, items: Sequence[tuple[Element, int]], ledger: Ledger | None = None
+) -> list[NotTaken]:
+    """Write elements of any kind, read all back, and report what did not take.
 
     Args:
         plc: the PLC.
         items: elements with raw, unsigned values.
+        ledger: keeps account of what was written, should it end half way.
 
     Raises:
         UsageError: two of them share a discrete or register; nothing was sent.
@@ -72,7 +76,7 @@ def write_elements(plc: Plc, items: Sequence[tuple[Element, int]]) -> list[NotTa
     both = overlapping(element for element, _ in items)
     if both is not None:
         raise UsageError(f"{both[0]} and {both[1]} overlap: what should be there?")
-    refused = _Writer(plc, dict(items)).write()
+    refused = _Writer(plc, dict(items), ledger or Ledger()).write()
     found = read_elements(plc, [element for element, _ in items])
     failed = [
         (element, wanted)
@@ -93,43 +97,13 @@ def write_elements(plc: Plc, items: Sequence[tuple[Element, int]]) -> list[NotTa
     ]
 
 
-def write_planned(
-    plc: Plc, items: Sequence[tuple[Element, int]], safety: str | None, *, failed: str, values: str = "values"
-) -> list[NotTaken]:
-    """``write_elements``, for what was planned and shown: one error tells of a line that failed on the way.
-
-    Args:
-        plc: the PLC.
-        items: elements with raw, unsigned values.
-        safety: where the present values are saved, for messages.
-        failed: what has not come to its end, such as "the table was not written whole".
-        values: what is written.
-
-    Raises:
-        LineError: no answer; nothing was written, and so with ``KeyboardInterrupt``.
-        RestoreIncomplete: no answer, or an interrupt, after the first write was sent.
-    """
-    sent = plc.link.counters.writes
-    try:
-        return write_elements(plc, items)
-    except (LineError, KeyboardInterrupt) as error:
-        if plc.link.counters.writes == sent:
-            raise
-        cause = error.message if isinstance(error, LineError) else "interrupted"
-        raise RestoreIncomplete(
-            f"{failed} ({cause}): some of {len(items)} {values} may be written",
-            hint=f"run it again: it writes what is left; the {values} before: {safety or 'not saved'}",
-            safety_snapshot=safety,
-            cause=cause,
-        ) from error
-
-
 class _Writer:
     """Writes, and finds out what is refused."""
 
-    def __init__(self, plc: Plc, values: dict[Element, int]) -> None:
+    def __init__(self, plc: Plc, values: dict[Element, int], ledger: Ledger) -> None:
         self._plc = plc
         self._values = values
+        self._ledger = ledger
         self._failed: list[Request[None]] = []
 
     def write(self) -> dict[Element, str]:
@@ -155,7 +129,7 @@ class _Writer:
         self._failed = []
         for request in _plan(self._plc, [(element, self._values[element]) for element in elements]):
             try:
-                self._plc.link.ask(request)
+                self._ask(request)
             except PlcRefused:
                 self._failed.append(request)
         if not self._failed:
@@ -169,12 +143,14 @@ class _Writer:
         value = self._values[element]
         one = element.kind.bits == 1
         try:
-            self._plc.link.ask(
-                WriteDiscretes(element, (bool(value),)) if one else WriteRegisters(element, (value,))
-            )
+            self._ask(WriteDiscretes(element, (bool(value),)) if one else WriteRegisters(element, (value,)))
         except PlcRefused as error:
             return error.message
         return None
+
+    def _ask(self, request: Request[None]) -> None:
+        with self._ledger.entry(parts_of(request)):
+            self._plc.link.ask(request)
 
 
 def _plan(plc: Plc, items: list[tuple[Element, int]]) -> list[Request[None]]:

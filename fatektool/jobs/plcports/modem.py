@@ -1,7 +1,6 @@
 """The modem of port 1, as the PLC's registers set it: read, and set anew.
 
-Setting goes the way of ``snapshot apply``: read what is there, save it as a safety snapshot, ask, write only
-what differs, read back. Of a register that holds two settings the other half stays as it is.
+Of a register that holds two settings the other half stays as it is.
 
 FBs link paper, chapter 13, modem::
 
@@ -18,12 +17,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import PlcError, UsageError
+from fatektool.jobs.elements.planned import RegisterChange
 from fatektool.jobs.elements.reads import named, read_elements
 from fatektool.jobs.elements.selection import Item
-from fatektool.jobs.elements.writes import NotTaken, write_planned
-from fatektool.jobs.plcports.tables import RegisterChange, WritePlan
-from fatektool.jobs.snapshots.snapshot import raw_of, take_snapshot
+from fatektool.jobs.snapshots.snapshot import raw_of, snapshot_and_status
 from fatektool.jobs.snapshots.spec import SpecItem
+from fatektool.jobs.snapshots.write_values import ValuesPlan
 from fatektool.plcports.phone_number import phone_number_words
 from fatektool.plcports.settings import PHONE_REGISTERS, Modem, decode_modem
 from fatektool.protocol.elements import Element
@@ -121,7 +120,7 @@ def read_modem(plc: Plc) -> ModemReport:
     return ModemReport(decode_modem(values), values, errors)
 
 
-def plan_modem(plc: Plc, settings: ModemSettings) -> WritePlan:
+def plan_modem(plc: Plc, settings: ModemSettings) -> ValuesPlan:
     """Read what is there now and find what differs. Changes nothing.
 
     Raises:
@@ -134,7 +133,9 @@ def plan_modem(plc: Plc, settings: ModemSettings) -> WritePlan:
     if settings.number is not None:
         phone_number_words(settings.number)  # before anything is asked of the PLC
     elements = [Element.parse(name) for name in settings.elements]
-    present = take_snapshot(plc, [SpecItem(Item(str(each), each, _type(each))) for each in elements])
+    present, status = snapshot_and_status(
+        plc, [SpecItem(Item(str(each), each, _type(each))) for each in elements]
+    )
     if present.errors:
         said = next(iter(present.errors.values()))
         raise PlcError(
@@ -148,23 +149,9 @@ def plan_modem(plc: Plc, settings: ModemSettings) -> WritePlan:
         for element in elements
         if now[str(element)] != wanted[str(element)]
     )
-    return WritePlan(present, changes, len(elements) - len(changes))
-
-
-def write_modem(plc: Plc, plan: WritePlan, safety: str | None) -> list[NotTaken]:
-    """Write what differs and read it back; give what did not take.
-
-    Args:
-        plc: the PLC.
-        plan: of this PLC, just now.
-        safety: where the present values lie, for messages.
-
-    Raises:
-        LineError: no answer, and nothing was written.
-        RestoreIncomplete: the line failed on the way.
-    """
-    writes = [(change.element, change.after) for change in plan.changes]
-    return write_planned(plc, writes, safety, failed="the modem was not set whole")
+    return ValuesPlan(
+        "the modem was not set completely", present, status, changes, len(elements) - len(changes)
+    )
 
 
 def _type(element: Element) -> ValueType:

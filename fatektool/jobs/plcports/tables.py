@@ -1,22 +1,20 @@
-"""Reading a communication table out of a PLC, and putting one in.
+"""Reading a communication table out of a PLC, and planning to write one.
 
-Putting one in goes the way of ``snapshot apply``: read what is there, save it as a safety snapshot, ask,
-write only what differs, read back. Cut off half way, the same again writes what is left. In RUN an
-instruction may use the table while it is half old and half new.
+In RUN an instruction may use the table while it is half old and half new.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import DataError, PlcError, UsageError
+from fatektool.jobs.elements.planned import RegisterChange
 from fatektool.jobs.elements.reads import named
 from fatektool.jobs.elements.selection import Item
-from fatektool.jobs.elements.writes import NotTaken, write_planned
 from fatektool.jobs.plcports.ports import read_words, require_register
-from fatektool.jobs.snapshots.snapshot import Snapshot, raw_of, take_snapshot
+from fatektool.jobs.snapshots.snapshot import raw_of, snapshot_and_status
 from fatektool.jobs.snapshots.spec import SpecItem
+from fatektool.jobs.snapshots.write_values import ValuesPlan
 from fatektool.plcports.tables import Table, parse_table, table_words
 from fatektool.protocol.elements import Element
 from fatektool.protocol.values import ValueType
@@ -70,31 +68,7 @@ def read_table(plc: Plc, start: Element, kind: TableKind) -> Table:
     )
 
 
-@dataclass(frozen=True, slots=True)
-class RegisterChange:
-    """A register that will be written: what it holds, and what it shall hold."""
-
-    element: Element
-    before: int
-    after: int
-
-
-@dataclass(frozen=True, slots=True)
-class WritePlan:
-    """What will be written.
-
-    Attributes:
-        present: the registers of the table as they are now.
-        changes: those that do not hold what they shall.
-        same: how many do already.
-    """
-
-    present: Snapshot
-    changes: tuple[RegisterChange, ...]
-    same: int
-
-
-def plan_write(plc: Plc, start: Element, words: Sequence[int]) -> WritePlan:
+def plan_write(plc: Plc, start: Element, words: Sequence[int]) -> ValuesPlan:
     """Read what is there now and find what differs. Changes nothing.
 
     Args:
@@ -112,7 +86,7 @@ def plan_write(plc: Plc, start: Element, words: Sequence[int]) -> WritePlan:
         raise UsageError(f"{len(words)} registers from {start} go past {start.symbol}{start.kind.last}")
     elements = [start.after(place) for place in range(len(words))]
     items = [SpecItem(Item(str(element), element, ValueType.HEX)) for element in elements]
-    present = take_snapshot(plc, items)
+    present, status = snapshot_and_status(plc, items)
     if present.errors:
         said = next(iter(present.errors.values()))
         raise PlcError(
@@ -124,25 +98,6 @@ def plan_write(plc: Plc, start: Element, words: Sequence[int]) -> WritePlan:
         for element, before, after in zip(elements, now, words, strict=True)
         if before is not None and before != after
     )
-    return WritePlan(present, changes, len(words) - len(changes))
-
-
-def write_plan(plc: Plc, plan: WritePlan, safety: str | None) -> list[NotTaken]:
-    """Write what differs and read it back; give what did not take.
-
-    Args:
-        plc: the PLC.
-        plan: of this PLC, just now.
-        safety: where the present words lie, for messages.
-
-    Raises:
-        LineError: no answer, and nothing was written.
-        RestoreIncomplete: the line failed on the way.
-    """
-    return write_planned(
-        plc,
-        [(change.element, change.after) for change in plan.changes],
-        safety,
-        failed="the table was not written whole",
-        values="words",
+    return ValuesPlan(
+        "the table was not written completely", present, status, changes, len(words) - len(changes)
     )

@@ -1,48 +1,42 @@
-"""Restore: put a backup's program into a PLC, with a way back at every step.
+"""Restore: put a backup's program into a PLC, in such a way that the previous one can be put back.
 
 The order, and what an end at each step leaves in the PLC::
 
-    1. the file is read and checked                            the old program
-    2. status: ladder size, ROM pack, RUN                      the old program
-    3. the PLC's program is read; equal: done                  the old program
-    4. it is on disk as a safety backup                        the old program
-    5. the plan is shown and agreed to                         the old program
-    6. still the same PLC? STOP; pages are written, 0 to N     part old, part new: the same command goes on
-    7. all is read back and compared                           the new program, not yet proven
+    1. the file is read and checked                            the previous program
+    2. status: ladder size, ROM pack, RUN                      the previous program
+    3. the PLC's program is read; equal: done                  the previous program
+    4. it is on disk as a safety backup                        the previous program
+    5. the plan is shown and agreed to                         the previous program
+    6. still the same PLC? STOP; pages are written, 0 to N     part previous, part new: run the same again
+    7. all is read back and compared                           the new program, not yet verified
     8. RUN, if asked                                           the new program
 
-``plan_restore`` does 2 and 3, ``carry_out`` 6 to 8; ``restore`` does all with 4 in between.
+``plan_restore`` does 2 and 3; ``carry_out`` does 4 to 7 by ``write_back``, and 8.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fatektool.errors import (
-    DataError,
-    FatektoolError,
-    LineError,
-    PlcError,
-    PlcNotReady,
-    RestoreIncomplete,
-    UsageError,
-)
+from fatektool.errors import LineError, PlcError, PlcNotReady, UsageError
 from fatektool.jobs.programs.backup import backup_of
 from fatektool.jobs.programs.fit import model_warning, require_kin, require_size
-from fatektool.jobs.programs.reading import ProgramReading, read_program, read_program_twice
+from fatektool.jobs.programs.reading import read_program, read_program_twice
 from fatektool.jobs.programs.rewrite import Rewrite
-from fatektool.jobs.programs.safety import way_back
+from fatektool.jobs.programs.safety import SafetyBackup
 from fatektool.jobs.progress import Progress, no_progress
+from fatektool.jobs.write_back.plan import WritePlan
+from fatektool.jobs.write_back.record import NO_MARK, Mark
+from fatektool.jobs.write_back.write import Agree, agreed, write_back
 from fatektool.program.compare import Comparison, compare_images
 from fatektool.program.image import ranges
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
 
     from fatektool.client import Plc
-    from fatektool.jobs.programs.unfinished import Mark
     from fatektool.program.archive import Backup
     from fatektool.program.image import Program
 
@@ -55,9 +49,9 @@ class RestoreOptions:
         stop: stop a running PLC; without it a running PLC is refused.
         run: let it run again when all is read back.
         changed_only: write only the pages that differ.
-        rollback: put the old program back if writing or reading back fails for good.
-        any_header: restore a file whose header does not hold and that says so.
-        single_pass: read the old program once, not twice.
+        rollback: put the previous program back if writing or reading back fails for good.
+        any_header: restore a file whose header is invalid and that is marked so.
+        single_pass: read the previous program once, not twice.
     """
 
     stop: bool = False
@@ -99,7 +93,7 @@ class RestoreResult:
         pages_written: how many pages were written.
         pages_equal: how many pages were equal already.
         verified: True: the whole program was read and equals the file.
-        safety_backup: where the old program lies; None if it was not asked for or nothing was written.
+        safety_backup: where the previous program is saved; None if it is not, or nothing was written.
         mode_before: ``run`` or ``stop``.
         mode_after: ``run`` or ``stop``.
         warnings: what the user should know.
@@ -141,7 +135,9 @@ def plan_restore(
             "the PLC is in RUN: expected STOP before its program is written",
             hint="make the machine safe, then add --stop",
         )
-    reading = _read_present(plc, options, progress)
+    reading = (
+        read_program(plc, progress=progress) if options.single_pass else read_program_twice(plc, progress)
+    )
     present = reading.program
     require_size(backup.program, present.ladder_words)  # it may be another PLC by now
     require_kin(backup.program, present, any_header=options.any_header)
@@ -174,105 +170,75 @@ def plan_restore(
     )
 
 
-def _read_present(plc: Plc, options: RestoreOptions, progress: Progress) -> ProgramReading:
-    phase = "old program"
-    if options.single_pass:
-        return read_program(plc, phase, progress)
-    return read_program_twice(plc, progress, phase=phase)
-
-
 def carry_out(
     plc: Plc,
     plan: RestorePlan,
-    safety_backup: str | None,
+    safety: SafetyBackup | None = None,
+    agree: Agree = agreed,
     *,
     progress: Progress = no_progress,
-    mark: Mark | None = None,
+    mark: Mark = NO_MARK,
 ) -> RestoreResult:
-    """Do what was planned: STOP, write, read back, RUN.
+    """Do what was planned: safety backup, question, STOP, write, read back, RUN.
 
     Args:
         plc: the PLC.
         plan: of this PLC, just now.
-        safety_backup: where the old program lies, for messages.
+        safety: saves the previous program; None for no safety backup.
+        agree: is told where that is, and raises an error if it is not agreed to; not called if there is
+            nothing to do.
         progress: told of each page.
         mark: takes note that pages are being written.
 
     Raises:
-        RestoreIncomplete: the PLC's program is neither old nor new; ``details`` say which pages are.
+        RestoreIncomplete: the PLC's program is neither the previous nor the new one.
+        UsageError: the safety backup cannot be written, or it is not agreed to; nothing was written.
         DataError: this is not the PLC that the plan was made of; nothing was written.
-        PlcError: nothing was written; or all was, and RUN is refused; or it was rolled back.
+        PlcError: nothing was changed; or all was, and RUN is refused; or it was rolled back.
         LineError: the same, for want of an answer.
     """
     running = plan.running
     warnings = plan.warnings
+    path = None
     if plan.pages:
-        _require_as_planned(plc, plan)
-        if running:
-            plc.stop()
-            running = False
-        warnings += _write(plc, plan, safety_backup, progress, mark)
+        rewrite = Rewrite(plc, plan.wanted, plan.present, plan.pages, running=running)
+        whole = WritePlan(
+            (rewrite,),
+            safety or SafetyBackup(plan.present, plan.wanted, Path(), None),
+            "the restore did not complete",
+            "STOP: do not switch it to RUN",
+            rollback=plan.options.rollback,
+        )
+        path = write_back(plc, whole, agree, mark=mark, progress=progress)
+        running = False
+        warnings += rewrite.warnings
+    elif plan.options.run and not running:
+        agree(None)
     if plan.options.run and not running:
-        try:
-            plc.run()
-        except (LineError, PlcError) as error:
-            silent = isinstance(error, LineError)
-            doubt = "whether it runs is not known" if silent else "the PLC does not RUN"
-            raise (LineError if silent else PlcError)(
-                f"the program on file is in the PLC, read back and proven, but {doubt}: {error.message}",
-                hint=error.hint,
-                **error.details,
-            ) from error
+        _run(plc)
         running = True
     return RestoreResult(
         pages_written=len(plan.pages),
         pages_equal=len(plan.wanted.pages) - len(plan.comparison.pages),
         verified=True,
-        safety_backup=safety_backup,
+        safety_backup=None if path is None else str(path),
         mode_before="run" if plan.running else "stop",
         mode_after="run" if running else "stop",
         warnings=warnings,
     )
 
 
-def _write(
-    plc: Plc, plan: RestorePlan, safety_backup: str | None, progress: Progress, mark: Mark | None
-) -> tuple[str, ...]:
-    """Write the pages and read all back; give what the user should know."""
-    rewrite = Rewrite(plc, plan.wanted, plan.present.program, safety_backup, progress)
-    if mark is not None:
-        mark.begin()
+def _run(plc: Plc) -> None:
     try:
-        rewrite.write(plan.pages, rollback=plan.options.rollback)
-    except RestoreIncomplete:
-        raise
-    except FatektoolError:  # nothing was changed, or it is rolled back
-        if mark is not None:
-            mark.end(proven=False)
-        raise
-    if mark is not None:
-        mark.end(proven=True)
-    return rewrite.warnings
-
-
-def _require_as_planned(plc: Plc, plan: RestorePlan) -> None:
-    """Look once more before the first page: a question may have waited for its answer for a long time."""
-    status = plc.detailed_status()
-    before, now = plan.present.plc["system"], status.system.document()
-    if now != before:
-        changed = ", ".join(
-            f"{name} {before[name]}, now {now[name]}" for name in now if now[name] != before[name]
-        )
-        raise DataError(
-            f"this is not the PLC whose program was read ({changed}): nothing was written",
-            hint="was it exchanged meanwhile? run the restore again",
-        )
-    if status.flags.rom_pack or (status.flags.running and not plan.running):
-        what = "got a ROM pack" if status.flags.rom_pack else "went to RUN"
-        raise PlcNotReady(
-            f"the PLC {what} since its program was read: nothing was written",
-            hint="was it exchanged meanwhile? run the restore again",
-        )
+        plc.run()
+    except (LineError, PlcError) as error:
+        silent = isinstance(error, LineError)
+        doubt = "whether it runs is not known" if silent else "the PLC does not RUN"
+        raise (LineError if silent else PlcError)(
+            f"the program on file is in the PLC, read back and verified, but {doubt}: {error.message}",
+            hint=error.hint,
+            **error.details,
+        ) from error
 
 
 def restore(
@@ -291,20 +257,24 @@ def restore(
         plc: the PLC.
         backup: what to restore.
         file: where it came from; the safety backup is named after it.
-        confirm: is shown the plan and where the old program lies, and says whether to go on.
+        confirm: is shown the plan and where the previous program is saved, and says whether to go on; not
+            called if no page is to be written.
         options: what the restore may do.
         safety_folder: where the safety backup goes; None for none.
         progress: told of each page.
 
     Raises:
         UsageError: ``confirm`` said no.
-        RestoreIncomplete: the PLC's program is neither old nor new.
+        RestoreIncomplete: the PLC's program is neither the previous nor the new one.
         DataError: see ``plan_restore``.
         PlcError: see ``plan_restore`` and ``carry_out``.
         LineError: see ``plan_restore`` and ``carry_out``.
     """
     plan = plan_restore(plc, backup, options, progress=progress)
-    with way_back(plan.present, plan.wanted, file, safety_folder if plan.pages else None) as kept:
-        if plan.pages and not confirm(plan, kept.path):
-            raise UsageError("not agreed to: the PLC's program is unchanged")
-        return carry_out(plc, plan, kept.name, progress=progress, mark=kept)
+
+    def agree(kept: Path | None) -> None:
+        if plan.pages and not confirm(plan, kept):
+            raise UsageError("Aborted. Nothing was written.")
+
+    safety = SafetyBackup(plan.present, plan.wanted, file, safety_folder)
+    return carry_out(plc, plan, safety, agree, progress=progress)

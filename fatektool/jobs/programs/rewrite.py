@@ -1,10 +1,10 @@
-"""Writing pages into a PLC, reading all back, and saying exactly what it holds if that fails."""
+"""A program as a part of a write that can be undone: what the PLC holds is known page by page."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
-from fatektool.errors import FatektoolError, LineError, PlcError, PlcRefused, RestoreIncomplete
+from fatektool.errors import DataError, PlcError, PlcNotReady, PlcRefused
 from fatektool.program.image import ranges
 
 if TYPE_CHECKING:
@@ -12,88 +12,133 @@ if TYPE_CHECKING:
 
     from fatektool.client import Plc
     from fatektool.jobs.progress import Progress
+    from fatektool.program.archive import Backup
     from fatektool.program.image import Program
 
-_OLD: Final = "old"
-_NEW: Final = "new"
+_OLD: Final = "the previous program"
+_NEW: Final = "the new program"
 _UNCERTAIN: Final = "uncertain"
+_UNREAD: Final = "written but not read back"
 
 
 class Rewrite:
     """One attempt to turn a PLC's program into another.
 
     Args:
-        plc: the PLC, in STOP.
+        plc: the PLC.
         wanted: the program to write.
-        present: the program that is in it.
-        safety_backup: where ``present`` lies, for messages.
-        progress: told of each page.
+        present: the program that is in the PLC.
+        pages: which are written, in order; the others are in the PLC already.
+        running: True if the PLC runs, and is to be stopped.
     """
 
+    before: Final = "its previous program and is in STOP"
+
     def __init__(
-        self, plc: Plc, wanted: Program, present: Program, safety_backup: str | None, progress: Progress
+        self, plc: Plc, wanted: Program, present: Backup, pages: Sequence[int], *, running: bool
     ) -> None:
         self._plc = plc
         self._wanted = wanted
         self._present = present
-        self._safety_backup = safety_backup
-        self._progress = progress
-        self._holds: dict[int, str] = {}
-        self._unread: set[int] = set()  # acknowledged, which is not yet a proof
+        self._pages = pages
+        self._running = running
+        self._holds = dict.fromkeys(pages, _OLD)
+        self._unread: set[int] = set()  # acknowledged, which does not prove that it was written
         self._again: list[int] = []
         self._foreign: list[int] = []
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What the user should know of a program that was proven in the end."""
+        """What the user should know of a program that was verified in the end."""
         if not self._again:
             return ()
-        told = f"page {ranges(self._again)} was acknowledged, not taken, and written again"
+        found = f"page {ranges(self._again)} was acknowledged, did not take, and was written again"
         if self._foreign:
-            told += (
-                f"; page {ranges(self._foreign)} held neither the old nor the new program: was the PLC "
-                f"exchanged, or is somebody else loading a program? The safety backup may be of another"
+            found += (
+                f"; page {ranges(self._foreign)} held neither the previous nor the new program: was the PLC "
+                f"exchanged, or is somebody else loading a program? The safety backup may be of another one"
             )
-        return (told,)
+        return (found,)
 
-    def write(self, pages: Sequence[int], *, rollback: bool = False) -> None:
-        """Write pages in order, read the whole program back and compare.
+    @property
+    def untouched(self) -> bool:
+        """True if the PLC is known to hold its previous program to the byte."""
+        before, after = self._present.program.pages, self._wanted.pages
+        return not self._in(_UNCERTAIN) and all(before[page] == after[page] for page in self._in(_NEW))
+
+    def prepare(self) -> None:
+        """Look once more before the first page (53), as a question may wait long; STOP the PLC if it runs.
+
+        Raises:
+            DataError: this is not the PLC of the plan.
+            PlcError: it got a ROM pack, went to RUN, or does not stop.
+            LineError: no answer.
+        """
+        status = self._plc.detailed_status()
+        before, now = self._present.plc["system"], status.system.document()
+        if now != before:
+            changed = ", ".join(
+                f"{name} {before[name]}, now {now[name]}" for name in now if now[name] != before[name]
+            )
+            raise DataError(
+                f"this is not the PLC whose program was read ({changed})",
+                hint="was it exchanged meanwhile? run the restore again",
+            )
+        if status.flags.rom_pack or (status.flags.running and not self._running):
+            what = "got a ROM pack" if status.flags.rom_pack else "went to RUN"
+            raise PlcNotReady(
+                f"the PLC {what} since its program was read",
+                hint="was it exchanged meanwhile? run the restore again",
+            )
+        if self._running:
+            self._plc.stop()
+
+    def write(self, progress: Progress) -> None:
+        """Write the pages in order, read the whole program back and compare.
 
         A page that reads back wrong is written once more: an acknowledged write that was not made.
 
-        Args:
-            pages: which, in order; the others are in the PLC already.
-            rollback: put ``present`` back if this fails for good.
-
         Raises:
-            RestoreIncomplete: the PLC's program is neither old nor new.
-            PlcError: nothing was changed, or it was rolled back.
-            LineError: it was rolled back.
+            PlcError: the PLC refused a page, or holds something else now.
+            LineError: no answer.
         """
-        self._holds = dict.fromkeys(pages, _OLD)
-        try:
-            self._write(self._wanted, pages, _NEW, "writing")
-            self._prove(self._wanted, _NEW)
-        except KeyboardInterrupt:
-            raise self._incomplete("interrupted") from None
-        except Exception as error:
-            # Whatever it is, a trace that cannot be written among it: where the PLC stands must be said.
-            if isinstance(error, PlcError) and self._unchanged():
-                raise self._untouched(error) from error
-            cause = _cause(error)
-            if rollback:
-                cause = f"{cause}; and rolling back failed: {self._roll_back(error)}"
-            raise self._incomplete(cause) from error
+        self._write(self._wanted, self._pages, _NEW, "writing", progress)
+        self._prove(self._wanted, _NEW, progress)
 
-    def _pages(self, *states: str) -> list[int]:
-        return [number for number, state in sorted(self._holds.items()) if state in states]
+    def put_back(self, progress: Progress) -> None:
+        """Write the previous program back, read all of it back and compare; the errors of ``write``."""
+        previous = self._present.program
+        self._write(previous, self._in(_NEW, _UNCERTAIN), _OLD, "rolling back", progress)
+        self._prove(previous, _OLD, progress)
 
-    def _unchanged(self) -> bool:
-        """True if the PLC is known to hold its old program to the byte."""
-        before, after = self._present.pages, self._wanted.pages
-        return not self._pages(_UNCERTAIN) and all(before[page] == after[page] for page in self._pages(_NEW))
+    def states(self) -> list[tuple[str, str]]:
+        """What the PLC holds, by page."""
+        pages = {state: self._in(state) for state in (_NEW, _OLD, _UNCERTAIN)}
+        unread = self._acknowledged_only
+        found = {state: [page for page in those if page not in unread] for state, those in pages.items()}
+        found[_UNREAD] = unread
+        order = (_NEW, _UNREAD, _UNCERTAIN, _OLD)
+        return [(f"page {ranges(found[state])}", state) for state in order if found[state]]
 
-    def _write(self, program: Program, pages: Sequence[int], state: str, phase: str) -> None:
+    def details(self) -> dict[str, Any]:
+        """The same for scripts; pages that were not read back are among those written."""
+        return {
+            "pages_written": self._in(_NEW),
+            "pages_uncertain": self._in(_UNCERTAIN),
+            "pages_old": self._in(_OLD),
+            "pages_unread": self._acknowledged_only,
+        }
+
+    @property
+    def _acknowledged_only(self) -> list[int]:
+        return [page for page in self._in(_NEW, _OLD) if page in self._unread]
+
+    def _in(self, *states: str) -> list[int]:
+        return [page for page, state in sorted(self._holds.items()) if state in states]
+
+    def _write(
+        self, program: Program, pages: Sequence[int], state: str, phase: str, progress: Progress
+    ) -> None:
         total = len(pages)
         done, before = 0, _OLD
 
@@ -109,10 +154,10 @@ class Rewrite:
             self._holds[pages[done]] = state
             self._unread.add(pages[done])
             done = acknowledged
-            self._progress(phase, done, total)
+            progress(phase, done, total)
             begin()
 
-        self._progress(phase, 0, total)
+        progress(phase, 0, total)
         begin()
         try:
             self._plc.write_pages([(number, program.pages[number]) for number in pages], taken)
@@ -120,13 +165,13 @@ class Rewrite:
             self._holds[pages[done]] = before
             raise
 
-    def _prove(self, program: Program, state: str) -> None:
-        wrong = self._read_back(program, range(len(program.pages)), "reading back")
+    def _prove(self, program: Program, state: str, progress: Progress) -> None:
+        wrong = self._read_back(program, range(len(program.pages)), "reading back", progress)
         if wrong:
             self._again = wrong
-            self._foreign = self._pages(_UNCERTAIN)
-            self._write(program, wrong, state, "writing again")
-            wrong = self._read_back(program, wrong, "reading back again")
+            self._foreign = self._in(_UNCERTAIN)
+            self._write(program, wrong, state, "writing again", progress)
+            wrong = self._read_back(program, wrong, "reading back again", progress)
         if wrong:
             raise PlcError(
                 f"the PLC acknowledged page {ranges(wrong)}, but holds something else there",
@@ -139,10 +184,10 @@ class Rewrite:
                 hint="was it exchanged meanwhile? see 'fatektool status'",
             )
 
-    def _read_back(self, program: Program, pages: Sequence[int], phase: str) -> list[int]:
+    def _read_back(self, program: Program, pages: Sequence[int], phase: str, progress: Progress) -> list[int]:
         total = len(pages)
-        self._progress(phase, 0, total)
-        found = self._plc.read_pages(pages, lambda done: self._progress(phase, done, total))
+        progress(phase, 0, total)
+        found = self._plc.read_pages(pages, lambda done: progress(phase, done, total))
         self._unread.difference_update(pages)
         wrong = {
             number: page for number, page in zip(pages, found, strict=True) if page != program.pages[number]
@@ -153,59 +198,4 @@ class Rewrite:
     def _whose(self, number: int, page: bytes) -> str:
         if page == self._wanted.pages[number]:
             return _NEW
-        return _OLD if page == self._present.pages[number] else _UNCERTAIN
-
-    def _roll_back(self, cause: Exception) -> str:
-        """Put the old program back and raise the cause; or tell why that failed too."""
-        try:
-            self._write(self._present, self._pages(_NEW, _UNCERTAIN), _OLD, "rolling back")
-            self._prove(self._present, _OLD)
-        except KeyboardInterrupt:
-            return "interrupted"
-        except Exception as error:  # noqa: BLE001  # it is told, whatever it is
-            return _cause(error)
-        kind = LineError if isinstance(cause, LineError) else PlcError
-        raise kind(
-            f"{_cause(cause)}; rolled back: the PLC holds its old program again, read back and proven, "
-            f"and is in STOP",
-            hint=getattr(cause, "hint", None),
-            rolled_back=True,
-            safety_backup=self._safety_backup,
-        ) from cause
-
-    def _untouched(self, error: PlcError) -> PlcError:
-        return PlcError(
-            f"{error.message}; nothing was changed: the PLC holds its old program and is in STOP",
-            hint=error.hint,
-            **error.details,
-        )
-
-    def _incomplete(self, cause: str) -> RestoreIncomplete:
-        states = {_NEW: "holds the new program", _UNCERTAIN: "is uncertain", _OLD: "holds the old program"}
-        unread = [number for number in self._pages(_NEW, _OLD) if number in self._unread]
-        said = {words: self._pages(state) for state, words in states.items()}
-        said = {words: [number for number in pages if number not in unread] for words, pages in said.items()}
-        said["was written and not read back"] = unread
-        parts = [f"page {ranges(pages)} {words}" for words, pages in said.items() if pages]
-        way_back = (
-            f"the old program lies in {self._safety_backup}"
-            if self._safety_backup
-            else "there is no safety backup"
-        )
-        return RestoreIncomplete(
-            f"the restore did not complete ({cause}): {', '.join(parts)}; {way_back}; "
-            f"the PLC is in STOP and must not RUN",
-            hint="mend the cause and run the same restore again: it goes on where it stands",
-            cause=cause,
-            pages_written=self._pages(_NEW),
-            pages_uncertain=self._pages(_UNCERTAIN),
-            pages_old=self._pages(_OLD),
-            pages_unread=unread,
-            safety_backup=self._safety_backup,
-        )
-
-
-def _cause(error: Exception) -> str:
-    if isinstance(error, FatektoolError):
-        return error.message
-    return f"a fault of fatektool itself: {type(error).__name__}: {error}"
+        return _OLD if page == self._present.program.pages[number] else _UNCERTAIN

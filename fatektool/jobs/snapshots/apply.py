@@ -1,7 +1,6 @@
-"""Putting a snapshot's data back: after a battery died, or into a spare PLC.
+"""What ``snapshot apply`` will write: the values of a snapshot that the PLC does not hold.
 
-The order is that of a restore: read what is there, save it as a safety snapshot, ask, write only what
-differs, read back. Inputs (X) follow their terminals and are not written.
+Inputs (X) follow their terminals and are not written.
 """
 
 from __future__ import annotations
@@ -11,16 +10,17 @@ from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING
 
 from fatektool.errors import DataError
+from fatektool.jobs.elements.planned import RegisterChange
 from fatektool.jobs.elements.selection import Item, places_of
-from fatektool.jobs.elements.writes import NotTaken, write_planned
-from fatektool.jobs.snapshots.snapshot import Snapshot, raw_of, take_snapshot
+from fatektool.jobs.snapshots.snapshot import Snapshot, raw_of, snapshot_and_status
 from fatektool.jobs.snapshots.spec import SpecItem
+from fatektool.jobs.snapshots.write_values import ValuesPlan
 from fatektool.planner.atoms import atoms_of
 from fatektool.protocol.elements import Element
 from fatektool.protocol.values import ValueType
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
     from fatektool.client import Plc
 
@@ -30,36 +30,18 @@ class ApplyPlan:
     """What will be written.
 
     Attributes:
-        present: the same items as they are now.
+        values: what is written, each discrete and register once.
         changes: key, element, and raw bits on file.
         inputs: keys of inputs that differ; they are not written.
         missing: keys that the snapshot has no value for; they are not written.
         refused: keys that this PLC refuses, and what it says; they are not written.
     """
 
-    present: Snapshot
+    values: ValuesPlan
     changes: tuple[tuple[str, Element, int], ...]
     inputs: tuple[str, ...]
     missing: tuple[str, ...]
     refused: dict[str, str]
-
-    @property
-    def writes(self) -> list[tuple[Element, int]]:
-        """What is written, each discrete and register once: the widest element that it is part of."""
-        claimed: set[tuple[str, int]] = set()
-        found = []
-        for _, element, wanted in sorted(self.changes, key=lambda change: -change[1].kind.bits):
-            places = places_of(element)
-            free = [place for place in places if place not in claimed]
-            claimed.update(free)
-            if len(free) == len(places):
-                found.append((element, wanted))
-                continue
-            width = element.kind.bits // len(places)
-            for number, place in enumerate(places):
-                if place in free:
-                    found.append((Element(*place), wanted >> (number * width) & ((1 << width) - 1)))
-        return found
 
     def keys(self) -> dict[Element, str]:
         """What the snapshot calls an element that is written."""
@@ -91,9 +73,9 @@ def plan_apply(plc: Plc, snapshot: Snapshot, only: Iterable[str] = ()) -> ApplyP
         SpecItem(Item(key, element, ValueType(snapshot.elements[key]["type"])), *_scale(snapshot, key))
         for key, (element, _) in wanted.items()
     ]
-    present = take_snapshot(plc, items)
+    present, status = snapshot_and_status(plc, items)
     now = raw_of(present)
-    changes, inputs, missing, refused = [], [], [], {}
+    changes, inputs, missing, refused, same = [], [], [], {}, 0
     for key, (element, raw) in wanted.items():
         if raw is None:
             missing.append(key)
@@ -104,7 +86,29 @@ def plan_apply(plc: Plc, snapshot: Snapshot, only: Iterable[str] = ()) -> ApplyP
                 inputs.append(key)
             else:
                 changes.append((key, element, raw))
-    return ApplyPlan(present, tuple(changes), tuple(inputs), tuple(missing), refused)
+        else:
+            same += 1
+    once = tuple(_once(changes, {element: raw for element, raw in now.values() if raw is not None}))
+    values = ValuesPlan("the snapshot was not applied completely", present, status, once, same)
+    return ApplyPlan(values, tuple(changes), tuple(inputs), tuple(missing), refused)
+
+
+def _once(changes: Iterable[tuple[str, Element, int]], now: dict[Element, int]) -> Iterator[RegisterChange]:
+    """What is written, each discrete and register once: as the widest element that it is part of."""
+    claimed: set[tuple[str, int]] = set()
+    for _, element, wanted in sorted(changes, key=lambda change: -change[1].kind.bits):
+        before = now[element]
+        places = places_of(element)
+        free = [place for place in places if place not in claimed]
+        claimed.update(free)
+        if len(free) == len(places):
+            yield RegisterChange(element, before, wanted)
+            continue
+        width = element.kind.bits // len(places)
+        for number, place in enumerate(places):
+            if place in free:
+                shift, mask = number * width, (1 << width) - 1
+                yield RegisterChange(Element(*place), before >> shift & mask, wanted >> shift & mask)
 
 
 def _scale(snapshot: Snapshot, key: str) -> tuple[float | None, float | None, str | None]:
@@ -128,18 +132,3 @@ def _one_value_each(wanted: dict[str, tuple[Element, int | None]]) -> None:
                     f"the snapshot says two things of {atom[0]}{atom[1]}: {before[1]} and {key}",
                     hint="pick one with --only",
                 )
-
-
-def apply_plan(plc: Plc, plan: ApplyPlan, safety: str | None) -> list[NotTaken]:
-    """Write what differs and read it back; give what did not take.
-
-    Args:
-        plc: the PLC.
-        plan: of this PLC, just now.
-        safety: where the present values lie, for messages.
-
-    Raises:
-        LineError: no answer, and nothing was written.
-        RestoreIncomplete: the line failed on the way.
-    """
-    return write_planned(plc, plan.writes, safety, failed="the snapshot was not applied whole")

@@ -17,13 +17,14 @@ import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
-from fatektool.errors import DataError, PlcRefused, UsageError
+from fatektool.errors import DataError, UsageError
 from fatektool.files.atomic import STANDARD, file_error, is_pipe, read_bounded
 from fatektool.files.strict_json import read_json
 from fatektool.files.times import utc
 from fatektool.jobs.elements.extent import limits
 from fatektool.jobs.elements.reads import read_elements
 from fatektool.jobs.snapshots.spec import everything, items_in
+from fatektool.jobs.status import brief_or_none
 from fatektool.protocol.commands import Command
 from fatektool.protocol.elements import Element
 from fatektool.protocol.values import NUMBERS, Value, ValueType, decode, raw_text
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     from fatektool.client import Plc
     from fatektool.jobs.snapshots.spec import SpecItem
     from fatektool.protocol.elements import Stretch
+    from fatektool.protocol.status import BriefStatus
 
 SCHEMA: Final = "fatektool.snapshot/1"
 MAX_SNAPSHOT: Final = 64 << 20
@@ -93,6 +95,15 @@ def take_snapshot(plc: Plc, items: Sequence[SpecItem]) -> Snapshot:
     Raises:
         LineError: no answer.
     """
+    return snapshot_and_status(plc, items)[0]
+
+
+def snapshot_and_status(plc: Plc, items: Sequence[SpecItem]) -> tuple[Snapshot, BriefStatus | None]:
+    """The same, and the status (40) that was read before it; None where there is none.
+
+    Raises:
+        LineError: no answer.
+    """
     return _snapshot(plc, [item.item.element for item in items], lambda: items, None)
 
 
@@ -105,7 +116,7 @@ def take_all(plc: Plc) -> Snapshot:
     """
     system = plc.detailed_status().system
     stretches = everything(system)
-    return _snapshot(plc, stretches, lambda: items_in(stretches), limits(system))
+    return _snapshot(plc, stretches, lambda: items_in(stretches), limits(system))[0]
 
 
 def _snapshot(
@@ -113,11 +124,11 @@ def _snapshot(
     wanted: Sequence[Element | Stretch],
     items_of: Callable[[], Sequence[SpecItem]],
     within: Mapping[str, int] | None,
-) -> Snapshot:
+) -> tuple[Snapshot, BriefStatus | None]:
     clock = plc.link.transport.clock
     time, began = utc(), clock()
     tells = Command.BRIEF_STATUS in plc.link.codec.commands
-    running = _running(plc) if tells else None
+    status = brief_or_none(plc)
     reading = read_elements(plc, wanted, limits=within)
     items = items_of()  # not before all is read: there may be many thousands
     values: dict[str, Value | None] = {}
@@ -135,12 +146,12 @@ def _snapshot(
             values[key] = value_of(raw, item.item.type, element.kind.bits, item.scale, item.offset)
         except DataError as error:
             errors[key] = error.message
-    return Snapshot(
+    snapshot = Snapshot(
         time,
         plc.target,
         plc.link.station,
         plc.link.codec.name,
-        running,
+        None if status is None else status.flags.running,
         round(reading.ended - began, 3),
         reading.requests + tells,
         values,
@@ -148,15 +159,7 @@ def _snapshot(
         errors,
         [item.item.key for item in items if item.item.element in reading.not_asked],
     )
-
-
-def _running(plc: Plc) -> bool | None:
-    """The mode, which nobody asked for: None if the PLC refuses to tell."""
-    try:
-        return plc.brief_status().flags.running
-    except PlcRefused as error:
-        plc.link.note(f"RUN or STOP is not known: {error.message}")
-        return None
+    return snapshot, status
 
 
 def _element(item: SpecItem, raw: int | None) -> dict[str, Any]:

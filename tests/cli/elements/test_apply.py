@@ -12,9 +12,10 @@ from fatektool.cli import run
 from fatektool.errors import DataError, NoAnswer
 from fatektool.jobs.elements.reads import read_elements
 from fatektool.jobs.elements.selection import parse_items
-from fatektool.jobs.snapshots.apply import apply_plan, plan_apply
+from fatektool.jobs.snapshots.apply import plan_apply
 from fatektool.jobs.snapshots.formats import as_json
 from fatektool.jobs.snapshots.snapshot import load_snapshot, take_all
+from fatektool.jobs.snapshots.write_values import write_values
 from fatektool.protocol.elements import Element
 from fatektool.simulator.build import build_simulation
 from tests.cli.terminal import Terminal
@@ -51,7 +52,7 @@ def test_all_of_one_plc_makes_another_equal() -> None:
     other.plc.disable(Element("M", 3))
     plan = plan_apply(other.plc, snapshot)
     assert plan.inputs == ("X5",)
-    failed = apply_plan(other.plc, plan, None)
+    failed = write_values(other.plc, plan.values).not_taken
     assert {str(each.element): each.reason[:14] for each in failed} == {
         "R3850": "acknowledged, ", "M3": "it is disabled",
     }  # fmt: skip
@@ -81,10 +82,11 @@ def test_only_what_differs_is_written(plant: Plant, place: Path, monkeypatch: py
     assert not any(map(is_write, sent))
     assert not safety(place)
     done = plant.cli("snapshot", "apply", "monday.json", "--dry-run", "-q")
-    facts, (*rest,) = done.out.splitlines()[:5], done.out.splitlines()[5:]
-    assert [line.split()[0] for line in facts] == ["PLC", "model", "mode", "file", "from"]
+    facts, (*rest,) = done.out.splitlines()[:6], done.out.splitlines()[6:]
+    assert [line.split()[0] for line in facts] == ["PLC", "model", "mode", "file", "from", "time"]
     assert rest == [
-        "R7  6 -> 5", "M3  off -> on", "D4  2.5 -> 1.5", "dry run: nothing was written",
+        "R7  6 -> 5", "M3  off -> on", "D4  2.5 -> 1.5", "Previous values will be saved first.",
+        "dry run: nothing was written",
     ]  # fmt: skip
     document = plant.json("apply", "snapshot", "apply", "monday.json", "--yes")
     assert document["written"] == 3
@@ -131,13 +133,13 @@ def test_overlapping_views_are_written_once() -> None:
     )
     other = small()
     plan = plan_apply(other.plc, snapshot)
-    assert apply_plan(other.plc, plan, None) == []
+    assert write_values(other.plc, plan.values).not_taken == []
     assert not plan_apply(other.plc, snapshot).changes
     assert other.plc.read_registers(Element("R", 0), 4) == (1, 2, 3, 4)
     other.plc.write_registers(Element("R", 1), [9])  # within DR0 and DR1
     again = plan_apply(other.plc, snapshot)
     assert [key for key, *_ in again.changes] == ["R1", "DR0", "DR1"]
-    assert apply_plan(other.plc, again, None) == []
+    assert write_values(other.plc, again.values).not_taken == []
 
 
 def test_a_snapshot_that_says_two_things_is_refused(plant: Plant, place: Path) -> None:
@@ -207,7 +209,7 @@ def test_it_asks(plant: Plant, place: Path, monkeypatch: pytest.MonkeyPatch) -> 
     done = plant.cli("snapshot", "apply", "a.json")
     assert done.code == 2
     assert "R0  1 -> 0" in done.err
-    assert done.err.splitlines()[-1].endswith("nothing was written")
+    assert done.err.endswith("? [y/N]: fatektool: Aborted. Nothing was written.\n")
     assert plant.register(0) == 1
     assert not safety(place)  # nothing needs a way back
 
@@ -268,12 +270,14 @@ def test_the_message_of_a_cut_line(plant: Plant, place: Path, monkeypatch: pytes
     cut_in_write(monkeypatch, 1)
     done = plant.cli("snapshot", "apply", "a.json", "--yes", "--safety-dir", ".")
     assert done.code == 6
-    *_, headline, plc, cause, before, mend, command = done.err.splitlines()
-    assert headline == "fatektool: the snapshot was not applied whole: some of 100 values may be written"
+    *_, headline, plc, cause, new, old, saved, fix, command = done.err.splitlines()
+    assert headline == "fatektool: the snapshot was not applied completely"
     assert plc.split(maxsplit=1) == ["PLC", f"station 1 on {plant.target}"]
     assert cause.split()[0] == "cause"
-    assert before.split() == ["values", "before", safety(place)[0].name]
-    assert mend == "mend the cause, then go on with:"
+    assert new == "  R0-R63           uncertain"
+    assert old == "  R64-R99          the previous value"
+    assert saved.split() == ["previous", "values", "saved", "in", safety(place)[0].name]
+    assert fix == "fix the cause, then run:"
     assert command.startswith(f"fatektool snapshot apply -p {plant.target} a.json --yes")
 
 
@@ -281,14 +285,14 @@ def test_an_interrupt_in_the_middle(plant: Plant, place: Path, monkeypatch: pyte
     (place / "a.json").write_text(as_json(snapshot_of("R0-R99")))
     plant.write("R0-R99=2")
 
-    def interrupted(plc: Plc, _: object) -> None:
+    def interrupted(plc: Plc, *_: object) -> None:
         plc.link.counters.writes += 1
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("fatektool.jobs.elements.writes.write_elements", interrupted)
+    monkeypatch.setattr("fatektool.jobs.elements.planned.write_elements", interrupted)
     done = plant.cli("snapshot", "apply", "a.json", "--yes")
     assert done.code == 6
-    assert "  cause          interrupted" in done.err.splitlines()
+    assert "  cause            interrupted" in done.err.splitlines()
 
 
 def test_no_answer_before_the_first_write(plant: Plant, place: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -299,7 +303,7 @@ def test_no_answer_before_the_first_write(plant: Plant, place: Path, monkeypatch
     def silent(*_: object) -> None:
         raise NoAnswer("no answer from station 1")
 
-    monkeypatch.setattr("fatektool.jobs.elements.writes.write_elements", silent)
+    monkeypatch.setattr("fatektool.jobs.elements.planned.write_elements", silent)
     done = plant.cli("snapshot", "apply", "a.json", "--yes")
     assert done.code == 3
     assert "may be written" not in done.err

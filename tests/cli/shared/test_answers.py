@@ -30,7 +30,7 @@ def case(request: pytest.FixtureRequest, press: Press) -> Case:
 
 def error_line(case: Case, done: Done) -> str:
     """The one line of an error; a restore has told its plan before."""
-    return one_line(done.err.splitlines()[-1] if "proven" in case.message else done.err)
+    return one_line(done.err.splitlines()[-1] if "verified" in case.message else done.err)
 
 
 @pytest.mark.parametrize("as_json", [False, True], ids=["words", "json"])
@@ -51,7 +51,7 @@ def test_what_a_command_answers(case: Case, press: Press, cli: Cli, *, as_json: 
         assert done.out
     if case.schema == "error":
         assert re.search(case.message, error_line(case, done)), done.err
-        if "proven" not in case.message:
+        if "verified" not in case.message:
             assert press.program == before
     assert not list(press.folder.glob(".fatektool*"))
 
@@ -110,15 +110,16 @@ def test_a_restore_that_does_not_complete(press: Press, cli: Cli, *, as_json: bo
         (safety,) = press.safety
         again = f"fatektool restore --changed-only {press.new} -p {door.target} {' '.join(words)}"
         lines = done.err.splitlines()
-        *_, pages_new, pages_in_doubt, pages_old, way_back, mend, command = lines
+        *_, pages_new, pages_in_doubt, pages_old, saved, fix, command = lines
         said = lines[lines.index("fatektool: the restore did not complete") + 1 :]
-        assert said[0] == f"  PLC          station 1 on {door.target}, in STOP; it must not RUN"
-        assert said[1].startswith("  cause        ")
-        assert pages_new == "  page 0-2     written, not read back"
-        assert pages_in_doubt == "  page 3       uncertain"
-        assert pages_old == "  page 4-7     the old program"
-        assert way_back == f"  old program  {safety}"
-        assert mend == "mend the cause, then go on with:"
+        assert said[0] == f"  PLC               station 1 on {door.target}"
+        assert said[1] == "  mode              STOP: do not switch it to RUN"
+        assert said[2].startswith("  cause             ")
+        assert pages_new == "  page 0-2          written but not read back"
+        assert pages_in_doubt == "  page 3            uncertain"
+        assert pages_old == "  page 4-7          the previous program"
+        assert saved == f"  previous program  saved in {safety}"
+        assert fix == "fix the cause, then run:"
         assert command == again
         if as_json:
             details = done.document("error")["error"]["details"]

@@ -119,8 +119,8 @@ def test_a_restore_keeps_the_old_program_beside_the_file(press: Press, cli: Cli)
     assert done.err.splitlines()[5].startswith("time   ")
     assert done.err.splitlines()[6:] == [
         "The PLC's program differs in pages 1-7 (448 words).",
-        f"The old program is saved in {safety}",
         "8 of 8 pages will be written, then all read back.",
+        f"Previous program saved in {safety}",
     ]
     assert "8 written, 1 were equal already" in done.out
     assert cli("restore", safety, "-p", press.target, "--yes", "-q").err == ""
@@ -135,13 +135,13 @@ def test_a_dry_run_tells_what_would_be_done(press: Press, cli: Cli) -> None:
     assert [line.split()[0] for line in facts] == ["PLC", "model", "mode", "file", "from", "time"]
     assert done.out.splitlines()[6:] == [
         "The PLC's program differs in pages 1-7 (448 words).",
-        "The old program is saved in a safety backup before the first page is written",
         "The PLC is in RUN and will be stopped.",
         "7 of 8 pages will be written, then all read back.",
         "Then the PLC will RUN.",
+        "Previous program will be saved first.",
         "dry run: nothing was written",
     ]
-    assert "The old program is NOT saved: there is no way back." in cli(*words, "--no-safety-backup").out
+    assert "Previous program NOT saved: this write cannot be undone." in cli(*words, "--no-safety-backup").out
     document = cli(*words, "--json").document("restore")
     assert (document["dry_run"], document["pages_to_write"], document["pages_written"]) == (True, 7, 0)
     assert (document["verified"], document["mode_after"]) == (False, "run")

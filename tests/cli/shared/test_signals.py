@@ -99,6 +99,6 @@ def test_a_restore_is_killed_and_finished_by_the_same_command(place: Path) -> No
 
         done = process(*words)
         assert done.code == 0
-        assert f"The old program is saved in {safety.name}" in done.err
+        assert f"Previous program saved in {safety.name}" in done.err
         assert door.pages == NEW.pages
     assert sorted(path.name for path in place.iterdir()) == ["new.json", safety.name]

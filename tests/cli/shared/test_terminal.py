@@ -27,7 +27,7 @@ def test_restore_asks_and_yes_is_yes(press: Press) -> None:
         assert press.program == OLD
         for line in (
             "The PLC's program differs in pages 1-7 (448 words).",
-            f"The old program is saved in {safety.name}",
+            f"Previous program saved in {safety.name}",
             "8 of 8 pages will be written, then all read back.",
             "PLC    station 1 on sim:plc.state",
             "model  MC, 28 points, OS 3.1",
@@ -72,10 +72,10 @@ def test_an_answer(press: Press, command: str, keys: str, code: int) -> None:
     assert press.running == (command == "stop")
     assert "Traceback" not in terminal.text
     if code == 130:
-        stays = {"restore": "the PLC's program is unchanged", "run": "the PLC stays in STOP"}
+        stays = {"restore": "nothing was written", "run": "the PLC stays in STOP"}
         assert last == f"fatektool: interrupted: {stays.get(command, 'the PLC stays in RUN')}"
     else:
-        assert "fatektool: not agreed to: " in terminal.text
+        assert "fatektool: Aborted. " in terminal.text
     if "maybe" in keys:
         assert "please answer y or n" in terminal.text
 
@@ -127,7 +127,7 @@ def test_the_longest_bar_fits_into_sixty_columns(press: Press) -> None:
     ) as terminal:  # fmt: skip
         assert terminal.end() == 0
         lines = terminal.text.splitlines()
-    for phase in ("old program", "old program, pass 2", "writing", "reading back"):
+    for phase in ("reading", "reading, pass 2", "writing", "reading back"):
         assert any(re.fullmatch(rf"{phase} +━+ 8/8 pages +[0-9.]+/s 0:00:0\d", line) for line in lines), lines
 
 

@@ -11,7 +11,7 @@ import pytest
 
 from fatektool.cli.shared.unfinished import record_of
 from fatektool.errors import DataError
-from fatektool.jobs.programs.unfinished import Unfinished
+from fatektool.jobs.write_back.record import Unfinished
 from fatektool.simulator.refusal import Refusal
 from tests.cli.running import NEW, OLD, Cli, Door, Press, served
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-WARNING = "warning: this PLC's restore is unfinished: it must not RUN"
+WARNING = "warning: a restore into this PLC did not complete: do not switch it to RUN"
 QUICK = ("--timeout", "0.2", "--retries", "0")
 
 
@@ -46,14 +46,14 @@ def test_who_talks_to_it_next_is_warned(press: Press, cli: Cli, door: Door, stat
         done = cli(*words, "-p", door.target)
         lines = done.err.splitlines()
         at = lines.index(WARNING)
-        assert lines[at + 1].startswith("  begun        20")
-        assert lines[at + 2] == f"  file         {press.new}"
-        assert lines[at + 3] == f"  old program  {safety}"
+        assert lines[at + 1].startswith("  started           20")
+        assert lines[at + 2] == f"  file              {press.new}"
+        assert lines[at + 3] == f"  previous program  saved in {safety}"
         assert lines[at + 4].startswith(
-            "  other PLC?   if another one is connected now, do not finish it here"
+            "  other PLC?        if another one is connected now, do not finish it here"
         )
         assert lines[at + 4].endswith(f", and delete {record}")
-        assert lines[at + 5 : at + 7] == ["  to finish it:", again], words
+        assert lines[at + 5 : at + 7] == ["  to finish it, run:", again], words
         assert record.exists()
     checked = cli("check", "--expect", "any", "-p", door.target)
     assert checked.code == 2
@@ -175,7 +175,7 @@ def test_a_record_that_cannot_be_written_stops_nothing(
     done = cli("restore", press.new, "-p", press.target, "--yes")
     assert done.code == 0
     assert press.program == NEW
-    assert "warning: no record of this restore, should it not complete: " in done.err
+    assert "warning: no record of this write, should it not complete: " in done.err
 
 
 @pytest.mark.parametrize(
@@ -190,7 +190,10 @@ def test_a_record_that_cannot_be_read_is_a_warning(
         file.write(text)
     done = cli("status", "-p", press.target, "--json")
     assert done.code == 0
-    assert done.err == f"warning: this PLC's restore is unfinished, and its record cannot be read: {path}\n"
+    assert (
+        done.err
+        == f"warning: a write into this PLC did not complete, and its record cannot be read: {path}\n"
+    )
     assert done.document("status")["unfinished_restore"] is None
     assert cli("restore", press.new, "-p", press.target, "--yes").code == 0
     assert not os.path.exists(path)  # noqa: PTH110

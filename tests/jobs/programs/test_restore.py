@@ -143,7 +143,7 @@ def test_a_restore_that_is_not_agreed_to_changes_nothing(tmp_path: Path) -> None
         assert load_backup(kept).program == OLD
         return False
 
-    with pytest.raises(UsageError, match="not agreed to: the PLC's program is unchanged"):
+    with pytest.raises(UsageError, match=r"Aborted\. Nothing was written\."):
         restore(bench.plc, backup(NEW), tmp_path / "x.json", confirm=no, options=RestoreOptions(stop=True),
                 safety_folder=tmp_path)  # fmt: skip
     ((plan, _),) = shown
@@ -257,7 +257,7 @@ def test_run_is_refused_after_the_restore(tmp_path: Path, flag: str, code: str) 
     error = caught.value
     assert error.exit_code == 4
     assert error.message.startswith(
-        "the program on file is in the PLC, read back and proven, but the PLC does not RUN: the PLC refused"
+        "the program on file is in the PLC, read back and verified, but the PLC does not RUN: the PLC refused"
     )
     assert f"error {code}, cannot run" in error.message
     assert error.hint
@@ -274,6 +274,8 @@ def test_no_answer_to_run_after_the_restore(tmp_path: Path) -> None:
             bench.tap.forge = lambda _seen, _answer: b"\0"
 
     bench.tap.before = cut
-    with pytest.raises(LineError, match="read back and proven, but whether it runs is not known: no answer"):
+    with pytest.raises(
+        LineError, match="read back and verified, but whether it runs is not known: no answer"
+    ):
         put(bench, NEW, tmp_path, run=True)
     assert bench.pages == NEW.pages

@@ -93,10 +93,16 @@ def test_the_power_goes_at_any_page(tmp_path: Path, write: int) -> None:
     assert error.details["pages_uncertain"] == [page]
     assert error.details["pages_old"] == list(range(page + 1, PAGES))
     told_right(error, bench)
-    way_back = f"the old program lies in {error.details['safety_backup']}"
-    uncertain = f"page {page} is uncertain"
-    again = "run the same restore again"
-    for part in ("the restore did not complete (no answer", uncertain, way_back, "must not RUN", again):
+    saved = f"previous program saved in {error.details['safety_backup']}"
+    uncertain = f"page {page}: uncertain"
+    again = "run the same command again"
+    for part in (
+        "the restore did not complete (no answer",
+        uncertain,
+        saved,
+        "do not switch it to RUN",
+        again,
+    ):
         assert part in str(error)
 
     bench.simulation.power_on()
@@ -130,7 +136,7 @@ def test_the_power_goes_again_and_again(tmp_path: Path) -> None:
 
 def test_without_a_safety_backup_that_is_said(tmp_path: Path) -> None:
     bench = Bench(OLD, faults=("power-cut=4",))
-    with pytest.raises(RestoreIncomplete, match="there is no safety backup") as caught:
+    with pytest.raises(RestoreIncomplete, match="previous program not saved") as caught:
         put(bench, tmp_path, safety=False)
     assert caught.value.details["safety_backup"] is None
 
@@ -156,8 +162,24 @@ def test_ctrl_c_at_any_page(tmp_path: Path, page: int, when: str) -> None:
     finish(bench, tmp_path, caught.value)
 
 
-@pytest.mark.parametrize("phase", ["writing", "reading back"])
-@pytest.mark.parametrize("done", range(PAGES + 1))
+def test_ctrl_c_before_the_first_page_is_sent(tmp_path: Path) -> None:
+    """The PLC holds its previous program: that is no restore that did not complete."""
+    bench = Bench(OLD)
+
+    def interrupt(now: str, pages: int, _total: int) -> None:
+        if (now, pages) == ("writing", 0):
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt, match="nothing was changed, the PLC holds its previous program"):
+        put(bench, tmp_path, progress=interrupt)
+    assert bench.pages == OLD.pages
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("phase", "done"),
+    [(phase, done) for phase in ("writing", "reading back") for done in range(phase == "writing", PAGES + 1)],
+)
 def test_ctrl_c_between_two_pages(tmp_path: Path, phase: str, done: int) -> None:
     bench = Bench(OLD)
 
@@ -173,7 +195,7 @@ def test_ctrl_c_between_two_pages(tmp_path: Path, phase: str, done: int) -> None
     finish(bench, tmp_path, caught.value)
 
 
-@pytest.mark.parametrize("phase", ["old program", "old program, pass 2"])
+@pytest.mark.parametrize("phase", ["reading", "reading, pass 2"])
 def test_ctrl_c_before_anything_is_written(tmp_path: Path, phase: str) -> None:
     bench = Bench(OLD)
 
@@ -209,7 +231,7 @@ def test_the_first_change_is_refused(tmp_path: Path, wanted: Program, *, rollbac
     error = caught.value
     assert error.exit_code == 4
     assert "the PLC refused to write program page 1 (50): error 3" in error.message
-    assert error.message.endswith("nothing was changed: the PLC holds its old program and is in STOP")
+    assert error.message.endswith("nothing was changed, the PLC holds its previous program and is in STOP")
     assert "ROM pack" in str(error.hint)
     assert error.details["code"] == "3"
     assert bench.pages == OLD.pages
@@ -240,9 +262,8 @@ def test_rollback_after_a_refusal(tmp_path: Path) -> None:
     error = caught.value
     assert error.exit_code == 4
     assert "refused to write program page 5" in error.message
-    assert "rolled back: the PLC holds its old program again, read back and proven, and is in STOP" in str(
-        error
-    )
+    back = "rolled back: the PLC holds its previous program and is in STOP again, read back and verified"
+    assert back in str(error)
     assert error.details["rolled_back"] is True
     assert bench.pages == OLD.pages
     assert bench.tap.pages_written == [0, 1, 2, 3, 4, 5, 0, 1, 2, 3, 4]
@@ -295,7 +316,7 @@ def test_a_plc_that_acknowledges_and_writes_nothing(tmp_path: Path) -> None:
     bench = Bench(OLD, faults=("lying-write=1",))
     with pytest.raises(PlcError, match="acknowledged page 1-7, but holds something else there") as caught:
         put(bench, tmp_path)
-    assert "nothing was changed: the PLC holds its old program" in caught.value.message
+    assert "nothing was changed, the PLC holds its previous program" in caught.value.message
     assert "worn out or protected" in str(caught.value)
     assert bench.pages == OLD.pages
 
@@ -366,7 +387,7 @@ def test_whatever_else_fails_the_plc_is_not_left_without_a_word(
         put(bench, tmp_path, rollback=rollback)
     assert cause in caught.value.message
     if rollback:
-        assert "rolled back: the PLC holds its old program again" in caught.value.message
+        assert "rolled back: the PLC holds its previous program" in caught.value.message
         assert bench.pages == OLD.pages
         return
     assert isinstance(caught.value, RestoreIncomplete)

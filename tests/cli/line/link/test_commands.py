@@ -147,9 +147,9 @@ def test_the_safety_snapshot_comes_first_and_goes_back(
     put(fbs, "R500", before)
     Path("t.toml").write_text(WRITTEN["md0"], encoding="utf-8")
     dry = fbs.cli("link", "table", "write", "t.toml", "R500", "--dry-run")
-    assert dry.out.splitlines()[0] == "R500  0064 -> 0002"
-    assert dry.out.splitlines()[-2] == "dry run: nothing was written"
-    assert dry.out.splitlines()[-1] == f"station 1 on {fbs.target} (code 40, STOP)"
+    assert dry.out.splitlines()[0] == f"PLC    station 1 on {fbs.target}"
+    assert "R500  0064 -> 0002" in dry.out.splitlines()
+    assert dry.out.splitlines()[-1] == "dry run: nothing was written"
     assert "add --yes" in error_of(fbs.cli("link", "table", "write", "t.toml", "R500"), 2)
     assert not list(place.glob("*.safety-*"))
     assert held(fbs, "R", 500, 15) == before
@@ -164,7 +164,7 @@ def test_the_safety_snapshot_comes_first_and_goes_back(
     assert fbs.cli("snapshot", "apply", document["safety_snapshot"], "--yes").code == 0
     assert held(fbs, "R", 500, 15) == before
     done = fbs.cli("link", "table", "write", "t.toml", "R500", "--yes", "--no-safety-snapshot")
-    assert "The values before are NOT saved." in done.err
+    assert "Previous values NOT saved: this write cannot be undone." in done.err
 
 
 def test_a_line_that_fails_half_way(fbs: Plant, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -174,7 +174,7 @@ def test_a_line_that_fails_half_way(fbs: Plant, monkeypatch: pytest.MonkeyPatch)
         cut_in_write(cut, 1)
         done = fbs.cli(*write)
     assert done.code == 6
-    assert "the table was not written whole" in done.err
+    assert "the table was not written completely" in done.err
     command = shlex.split(done.err.splitlines()[-1])
     assert command[:4] == ["fatektool", "link", "table", "write"]
     assert command[4:6] == ["-p", fbs.target]
@@ -188,7 +188,7 @@ def test_what_does_not_take_is_named(fbs: Plant) -> None:
     done = fbs.cli("link", "table", "write", "t.toml", "R3838", "--yes", "--force")
     assert done.code == 4
     assert "warning: R3840: did not take: expected 0004, it holds 0000" in done.err
-    assert done.out.startswith("2 of 7 registers written and read back")
+    assert done.out.startswith("2 of 7 values written and read back")
 
 
 @pytest.mark.parametrize(("answer", "code"), [("y", 0), ("n", 2)])

@@ -105,7 +105,7 @@ def test_what_is_named_is_set_and_nothing_else(
 def test_a_dry_run_writes_nothing(plc: Path, cli: Cli) -> None:
     done = cli("link", "modem", "set", "--tone", "--dry-run", "-p", PLC)
     assert done.code == 0
-    assert "M1959  1 -> 0\ndry run: nothing was written" in done.out
+    assert "M1959  1 -> 0\nPrevious values will be saved first.\ndry run: nothing was written" in done.out
     assert held(cli) == BEFORE
     assert not list(plc.glob("*safety*"))
 

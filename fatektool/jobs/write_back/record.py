@@ -1,4 +1,4 @@
-"""The record of a restore that has begun: written before the first page, removed when the program is proven.
+"""The record of a write that has begun: on disk before its first request, removed when it is complete.
 
 ::
 
@@ -6,8 +6,9 @@
      "time": "2026-11-22T03:15:00Z", "file": "/srv/press.json",
      "safety_backup": "/srv/press.safety-st01-….json", "command": "fatektool restore …"}
 
-A process that is killed leaves it, and so whoever talks to that PLC next is warned. It is a help and no more:
-what cannot be written is no reason not to restore, and what cannot be read says that there was one.
+``job`` is there as well if it is another one than ``restore``. A process that is killed leaves the record, so
+that the next command that talks to this PLC warns. A record that cannot be written does not stop a write; one
+that cannot be read is reported.
 """
 
 from __future__ import annotations
@@ -24,42 +25,65 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 SCHEMA: Final = "fatektool.unfinished/1"
+RESTORE: Final = "restore"
 _MAX_FILE: Final = 1 << 16
 
 
 class Mark(Protocol):
-    """Takes note of a restore: ``begin`` before its first page, ``end`` when it is proven or undone."""
+    """Takes note of a write: ``begin`` before its first request, ``end`` when it is complete or undone."""
 
-    def begin(self) -> None:
-        """The next request writes a page."""
+    def begin(self, safety_copy: Path | None) -> None:
+        """The next request writes.
 
-    def end(self, *, proven: bool) -> None:
-        """The PLC holds the new program, proven; or, if not, what it held before, to the byte."""
+        Args:
+            safety_copy: where the state before is saved.
+        """
+
+    def end(self, *, complete: bool) -> None:
+        """The write is complete; or, if not, the PLC holds what it held before, to the byte."""
+
+
+class NoMark:
+    """Takes no note."""
+
+    def begin(self, safety_copy: Path | None) -> None:
+        """Take no note."""
+
+    def end(self, *, complete: bool) -> None:
+        """Take no note."""
+
+
+NO_MARK: Final = NoMark()
 
 
 @dataclass(frozen=True, slots=True)
 class Unfinished:
-    """A restore that was begun.
+    """A write that was begun.
 
     Attributes:
         target: as the user named it.
-        station: 1 to 254.
+        station: 1 to 254; over Modbus TCP also 0 and 255.
         time: when it began, UTC.
-        file: what was to be restored, its whole path.
-        safety_backup: where the last whole program before it lies; None if it was not saved.
+        file: what was to be written, its whole path; None if there is no file.
+        safety_backup: where the state before it is saved; None if it was not saved.
         command: what finishes it.
+        job: the command's name.
     """
 
     target: str
     station: int
     time: str
-    file: str
+    file: str | None
     safety_backup: str | None
     command: str
+    job: str = RESTORE
 
     def document(self) -> dict[str, Any]:
         """The record as JSON has it."""
-        return asdict(self)
+        found = asdict(self)
+        if self.job == RESTORE:
+            del found["job"]
+        return found
 
     def save(self, path: Path) -> None:
         """Write the record, on disk when this returns; the folder is made.
@@ -84,13 +108,17 @@ class Unfinished:
         try:
             found = read_json(read_bounded(path, _MAX_FILE))
         except ValueError as error:
-            raise DataError(f"{path}: no record of a restore: {error}", file=str(path)) from error
+            raise DataError(f"{path}: no record of a write: {error}", file=str(path)) from error
+        if isinstance(found, dict):
+            found.setdefault("job", RESTORE)
         if not isinstance(found, dict) or found.pop("schema", None) != SCHEMA or not _holds(found):
-            raise DataError(f"{path}: no record of a restore of this version", file=str(path))
+            raise DataError(f"{path}: no record of a write of this version", file=str(path))
         return cls(**found)
 
 
 def _holds(found: dict[str, Any]) -> bool:
     kinds: dict[str, type | tuple[type, ...]] = dict.fromkeys(Unfinished.__slots__, str)
     kinds |= {"station": int, "safety_backup": (str, type(None))}
+    if found.get("job") != RESTORE:
+        kinds["file"] = (str, type(None))
     return found.keys() == kinds.keys() and all(isinstance(found[key], kind) for key, kind in kinds.items())

@@ -1,0 +1,133 @@
+"""What the commands that write values have in common."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from fatektool.cli.shared.addressee import Pace, with_status
+from fatektool.cli.shared.write_back import Offer, Writing
+from fatektool.jobs.snapshots.write_values import SafetySnapshot, ValuesPlan, Written, write_values
+from fatektool.protocol.values import raw_text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from fatektool.client import Plc
+    from fatektool.jobs.elements.planned import RegisterChange
+    from fatektool.protocol.elements import Element
+
+
+def offer_of(
+    plc: Plc,
+    plan: ValuesPlan,
+    writing: Writing,
+    pace: Pace,
+    *,
+    rows: Iterable[tuple[str, object]],
+    lines: Iterable[str],
+) -> Offer:
+    """A write of values as it is shown.
+
+    Args:
+        plc: the PLC.
+        plan: of this PLC, just now.
+        writing: the command.
+        pace: of the exchanges that the plan took.
+        rows: what is written and where that came from.
+        lines: what will change.
+    """
+    here = with_status(plc, plan.status)
+    count = len(plan.changes)
+    time = [("time", pace.time_of(plan.exchanges(plc)))] if count else []
+    question = f"Write {count} value{'' if count == 1 else 's'} into {here.name}?"
+    return Offer(writing, here, [*rows, *time], [*lines], question, "values")
+
+
+def put_values(plc: Plc, plan: ValuesPlan, offer: Offer, name: str) -> Written:
+    """Save, ask, write and read back, unless nothing differs or it is a dry run.
+
+    Args:
+        plc: the PLC.
+        plan: of this PLC, just now.
+        offer: shows it and asks.
+        name: what the safety snapshot's name begins with.
+
+    Raises:
+        UsageError: not agreed to.
+        RestoreIncomplete: some values are written.
+        FatektoolError: as ``write_back`` says; nothing was changed.
+    """
+    writing = offer.writing
+    done = Written(None, [])
+    if writing.terms.dry_run:
+        return done
+    if plan.changes:
+        copy = SafetySnapshot(plan, name, writing.folder, writing.earlier_copy)
+        with offer.carry_out() as mark:
+            done = write_values(plc, plan, copy, offer.agree, rollback=writing.terms.rollback, mark=mark)
+    else:
+        writing.forget()
+    return done
+
+
+def result_lines(plan: ValuesPlan, done: Written, offer: Offer, *details: str) -> Iterator[str]:
+    """What is said in the end.
+
+    Args:
+        plan: what was to be written.
+        done: what came of it.
+        offer: what was shown.
+        details: what a dry run shows more.
+    """
+    count = len(plan.changes)
+    if not count:
+        yield "same: nothing was written"
+    elif offer.writing.terms.dry_run:
+        yield from offer.dry_run(*details)
+    else:
+        taken = count - len(done.not_taken)
+        yield f"{taken} of {count} values written and read back, {plan.same} were equal already"
+        yield offer.here.line
+
+
+def change_line(change: RegisterChange) -> str:
+    """What an element holds, and what it shall hold."""
+    element = change.element
+    return f"{element}  {_text(element, change.before)} -> {_text(element, change.after)}"
+
+
+def changes_document(plan: ValuesPlan, done: Written, *, dry_run: bool) -> dict[str, Any]:
+    """What was to be written and what came of it, for JSON, in hex."""
+    return {
+        "dry_run": dry_run,
+        "changes": [
+            {
+                "element": str(change.element),
+                "from": _text(change.element, change.before),
+                "to": _text(change.element, change.after),
+            }
+            for change in plan.changes
+        ],
+        "same": plan.same,
+        "written": 0 if dry_run else len(plan.changes) - len(done.not_taken),
+        "not_taken": [
+            {
+                "element": str(each.element),
+                "wanted": _text(each.element, each.wanted),
+                "got": None if each.got is None else _text(each.element, each.got),
+                "reason": each.reason,
+            }
+            for each in done.not_taken
+        ],
+        "safety_snapshot": None if done.safety is None else str(done.safety),
+    }
+
+
+def not_taken_words(done: Written) -> dict[str, str]:
+    """What did not take, in words, by element."""
+    return {str(each.element): each.words(partial(_text, each.element)) for each in done.not_taken}
+
+
+def _text(element: Element, raw: int) -> str:
+    return raw_text(raw, element.kind.bits)

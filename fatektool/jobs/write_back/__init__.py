@@ -1,0 +1,1 @@
+"""The one write that can be undone: of a program, and of values."""

@@ -1,0 +1,95 @@
+"""What a write that can be undone is made of: its parts, in order, and the safety copy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from fatektool.jobs.progress import Progress
+
+
+class Part(Protocol):
+    """One thing that is written: a program, or values of elements. It is planned on this PLC just now."""
+
+    @property
+    def before(self) -> str:
+        """What is said of the PLC if this part is known to be as it was."""
+
+    @property
+    def untouched(self) -> bool:
+        """True if the PLC is known to hold what it held before, whatever was sent."""
+
+    def prepare(self) -> None:
+        """Check that it is still the PLC of the plan, as a question may wait long; then STOP it if planned.
+
+        Raises:
+            DataError: it is another PLC.
+            PlcError: it is in a state in which nothing may be written.
+            LineError: no answer.
+        """
+
+    def write(self, progress: Progress) -> None:
+        """Write what differs, read it back and compare.
+
+        Raises:
+            PlcError: the PLC refused, or holds something else now.
+            LineError: no answer.
+        """
+
+    def put_back(self, progress: Progress) -> None:
+        """Write what was there before, read it back and compare; the errors of ``write``."""
+
+    def states(self) -> list[tuple[str, str]]:
+        """What the PLC holds after a failure, for people: ``("page 0-3", "the new program")``."""
+
+    def details(self) -> dict[str, Any]:
+        """The same for scripts."""
+
+
+class SafetyCopy(Protocol):
+    """What is in the PLC now, to be saved in a file from which it can be written back."""
+
+    @property
+    def what(self) -> str:
+        """What it is a copy of: ``program``, ``values``."""
+
+    @property
+    def key(self) -> str:
+        """The name of its path in an error's details."""
+
+    @property
+    def folder(self) -> Path | None:
+        """Where it goes; None if nothing is to be saved."""
+
+    def find(self, folder: Path) -> Path | None:
+        """The copy that an unfinished run of the same write made, if what is there now is half that write."""
+
+    def save(self, folder: Path) -> Path:
+        """Write a new file; it is on disk when this returns.
+
+        Raises:
+            UsageError: the folder cannot be written.
+            DataError: the disk is full or broken.
+        """
+
+
+@dataclass(frozen=True, slots=True)
+class WritePlan:
+    """A write that is planned.
+
+    Attributes:
+        parts: what is written, in order.
+        copy: of all that they change.
+        failed: what is said if it ends half way.
+        mode: the mode that the PLC is in then, and what must not be done; empty if the write leaves it alone.
+        rollback: write back what was there if writing or reading back fails for good.
+    """
+
+    parts: tuple[Part, ...]
+    copy: SafetyCopy
+    failed: str
+    mode: str = ""
+    rollback: bool = False

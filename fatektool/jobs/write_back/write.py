@@ -1,0 +1,160 @@
+"""The order of every write that can be undone, and what the PLC holds if it ends at a step.
+
+::
+
+    1. the plan: what is in the PLC is read and compared       as before
+    2. the safety copy is on disk                              as before; the copy is removed again
+    3. the plan is shown and agreed to                         the same
+    4. still the same PLC? STOP it if that is planned          the same
+    5. the record of an unfinished write is on disk            the same; the record is removed again
+    6. each part is written, read back and compared            part before, part new; copy and record stay
+    7. the record is removed                                   as planned; the copy stays
+
+Step 1 is the job's (``plan_restore``, ``plan_apply`` …). An end at step 6 says for each part what the PLC
+holds, and the same command again writes what is left: it finds the copy of the first run and keeps that one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fatektool.errors import FatektoolError, LineError, PlcError, RestoreIncomplete
+from fatektool.jobs.progress import Progress, no_progress
+from fatektool.jobs.write_back.record import NO_MARK, Mark
+from fatektool.jobs.write_back.safety_copy import kept
+
+if TYPE_CHECKING:
+    from fatektool.client import Plc
+    from fatektool.jobs.write_back.plan import WritePlan
+
+Agree = Callable[[Path | None], object]
+"""Is told where the safety copy is, shows the plan, and raises an error if it is not agreed to."""
+
+
+def agreed(_: Path | None) -> None:
+    """Agree to everything: for a caller that has asked already."""
+
+
+def write_back(
+    plc: Plc,
+    plan: WritePlan,
+    agree: Agree = agreed,
+    *,
+    mark: Mark = NO_MARK,
+    progress: Progress = no_progress,
+) -> Path | None:
+    """Save what is there, ask, write, read back.
+
+    Args:
+        plc: the PLC.
+        plan: of this PLC, just now.
+        agree: is told where the safety copy is, shows the plan, and raises an error if it is not agreed to.
+        mark: takes note that a write is under way.
+        progress: told how far it is.
+
+    Returns:
+        Where the safety copy is; None if nothing is saved.
+
+    Raises:
+        RestoreIncomplete: part of it is written; ``states`` and ``details`` say what the PLC holds.
+        UsageError: the copy cannot be written, or it is not agreed to; nothing was written.
+        DataError: the disk is full, or this is not the PLC of the plan; nothing was written.
+        PlcError: the PLC refuses and nothing was changed, or it was rolled back.
+        LineError: no answer and nothing was written, or it was rolled back.
+        KeyboardInterrupt: nothing was written; says so.
+    """
+    with kept(plan.copy) as copy:
+        agree(copy.path)
+        try:
+            for part in plan.parts:
+                part.prepare()
+        except (FatektoolError, KeyboardInterrupt) as error:
+            raise _with(error, "nothing was written") from None
+        counters = plc.link.counters
+        sent = counters.writes
+        copy.needed = True
+        try:
+            mark.begin(copy.path)
+            for part in plan.parts:
+                part.write(progress)
+        except (Exception, KeyboardInterrupt) as error:
+            # Whatever it is, a trace that cannot be written among it: what the PLC holds must be said.
+            copy.needed = counters.writes != sent
+            refused = isinstance(error, PlcError) and all(part.untouched for part in plan.parts)
+            if refused or not copy.needed:
+                mark.end(complete=False)
+                raise _with(error, f"nothing was changed, the PLC holds {_before(plan)}") from None
+            raise _failed(plan, copy.path, error, mark, progress) from error
+        mark.end(complete=True)
+    return copy.path
+
+
+def _with(error: Exception | KeyboardInterrupt, unchanged: str) -> BaseException:
+    """The same error, which says that the PLC is as it was."""
+    if isinstance(error, KeyboardInterrupt):
+        return KeyboardInterrupt(unchanged)
+    if isinstance(error, FatektoolError):
+        error.message = f"{error.message}: {unchanged}"
+    return error
+
+
+def _failed(
+    plan: WritePlan,
+    path: Path | None,
+    error: Exception | KeyboardInterrupt,
+    mark: Mark,
+    progress: Progress,
+) -> FatektoolError:
+    """The error for a write that failed on the way; it is rolled back first if that is planned."""
+    cause = _cause(error)
+    if plan.rollback and isinstance(error, Exception):
+        try:
+            for part in reversed(plan.parts):
+                part.put_back(progress)
+        except (Exception, KeyboardInterrupt) as second:  # noqa: BLE001  # it is said, whatever it is
+            cause = f"{cause}; and rolling back failed: {_cause(second)}"
+        else:
+            mark.end(complete=False)
+            return (LineError if isinstance(error, LineError) else PlcError)(
+                f"{cause}; rolled back: the PLC holds {_before(plan)} again, read back and verified",
+                hint=getattr(error, "hint", None),
+                rolled_back=True,
+                **_saved(plan, path),
+            )
+    return _incomplete(plan, path, cause)
+
+
+def _incomplete(plan: WritePlan, path: Path | None, cause: str) -> RestoreIncomplete:
+    states = [state for part in plan.parts for state in part.states()]
+    held = "; ".join(f"{what}: {holds}" for what, holds in states)
+    saved = f"previous {plan.copy.what} {'not saved' if path is None else f'saved in {path}'}"
+    mode = f"the PLC is in {plan.mode}" if plan.mode else ""
+    details = {key: value for part in plan.parts for key, value in part.details().items()}
+    error = RestoreIncomplete(
+        "; ".join(filter(None, (f"{plan.failed} ({cause}): {held}", saved, mode))),
+        hint="fix the cause and run the same command again: it writes what is left",
+        cause=cause,
+        **details,
+        **_saved(plan, path),
+    )
+    error.headline, error.mode, error.states = plan.failed, plan.mode, states
+    error.saved = error.details[plan.copy.key]
+    return error
+
+
+def _before(plan: WritePlan) -> str:
+    return " and ".join(part.before for part in plan.parts)
+
+
+def _saved(plan: WritePlan, path: Path | None) -> dict[str, str | None]:
+    return {plan.copy.key: None if path is None else str(path)}
+
+
+def _cause(error: BaseException) -> str:
+    if isinstance(error, FatektoolError):
+        return error.message
+    if isinstance(error, KeyboardInterrupt):
+        return "interrupted"
+    return f"a fault of fatektool itself: {type(error).__name__}: {error}"
