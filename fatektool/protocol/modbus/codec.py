@@ -12,6 +12,7 @@ gives None, and silence must do. A TCP answer repeats the number of its request,
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 from fatektool.errors import FatektoolError, UsageError
@@ -24,7 +25,7 @@ from fatektool.protocol.modbus.map import STANDARD
 from fatektool.protocol.modbus.pdu import EXCEPTION
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator
+    from collections.abc import Collection
 
     from fatektool.protocol.codec import Decoder, Frame
     from fatektool.protocol.commands import Command, Request
@@ -192,26 +193,26 @@ class ModbusCodec:
         """
         if asked is None:
             return None
-        found = list(self._fences())
+        found = list(self._fences.items())
         start = int.from_bytes(nonce[-2:], "big")
         for place in range(len(found)):
-            fence = found[(start + place) % len(found)]
-            if self.shape(fence) not in asked:
+            shape, fence = found[(start + place) % len(found)]
+            if shape not in asked:
                 return fence
         return None
 
-    def _fences(self) -> Iterator[Request[Any]]:
-        """Reads from the beginning of each stretch, each of a length of its own."""
-        shapes: set[bytes] = set()
+    @cached_property
+    def _fences(self) -> dict[bytes, Request[Any]]:
+        """Reads from the beginning of each stretch, each of a length of its own, by their shapes."""
+        found: dict[bytes, Request[Any]] = {}
         for stretch in self.map.stretches:
             first = Element(stretch.symbol, stretch.first)
             step = 8 if stretch.area.of_bits else 1
             most = min(stretch.count, step * _LONGEST_FENCE) if stretch.width == 1 else 0
             for count in range(step, most + 1, step):
                 fence = ReadDiscretes(first, count) if step == 8 else ReadRegisters(first, count)
-                if self.shape(fence) not in shapes:
-                    shapes.add(self.shape(fence))
-                    yield fence
+                found.setdefault(self.shape(fence), fence)
+        return found
 
 
 _LONGEST_FENCE: Final = 32
