@@ -15,9 +15,9 @@ from typing import Final
 from fatektool.errors import FrameError
 from fatektool.protocol.codec import Frame
 from fatektool.protocol.modbus.codec import ModbusCodec
-from fatektool.protocol.modbus.decoding import Buffer
 from fatektool.protocol.modbus.framing import MAX_PDU, FramePart, Framing, always
 from fatektool.protocol.modbus.pdu import EXCEPTION, lrc_byte
+from fatektool.protocol.resync import Delimited
 
 MAX_ASCII: Final = 7 + 2 * MAX_PDU
 MIN_ASCII: Final = 11
@@ -34,34 +34,15 @@ def _checksum(data: bytes) -> bytes:
     return b"%02X" % lrc_byte(data)
 
 
-class AsciiDecoder(Buffer):
+class AsciiDecoder(Delimited):
     """Cuts ASCII frames out of a stream."""
 
-    def expect_no_more(self) -> bool:
-        """False: behind a frame that has not ended nothing can stand, as ``:`` would have begun another."""
-        return False
+    begin = b":"
+    end = b"\r\n"
+    longest = MAX_ASCII
 
-    def next_frame(self) -> Frame | None:
-        """Give the next frame, or None when more bytes are needed.
-
-        Raises:
-            FrameError: bad bytes, dropped.
-        """
-        buffer = self._buffer
-        if not buffer:
-            return None
-        start = buffer.find(b":")
-        if start:
-            raise FrameError("noise outside a frame", raw=self._take(start if start > 0 else len(buffer)))
-        end = buffer.find(b"\r\n", 1)
-        again = buffer.find(b":", 1, end if end > 0 else len(buffer))
-        if again > 0:
-            raise FrameError("a frame broke off and another began", raw=self._take(again))
-        if end < 0:
-            if len(buffer) > MAX_ASCII:
-                raise FrameError(f"no end within {MAX_ASCII} bytes", raw=self._take(len(buffer)))
-            return None
-        return parse_ascii(self._take(end + 2))
+    def _parse(self, raw: bytes) -> Frame:
+        return parse_ascii(raw)
 
 
 def parse_ascii(raw: bytes) -> Frame:

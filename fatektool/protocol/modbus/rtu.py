@@ -13,12 +13,13 @@ from __future__ import annotations
 
 from typing import Final
 
+from fatektool.errors import FrameError
 from fatektool.protocol.codec import Frame
 from fatektool.protocol.modbus.codec import ModbusCodec
-from fatektool.protocol.modbus.decoding import ByLength
 from fatektool.protocol.modbus.framing import LAST_STATION, FramePart, Framing, always
 from fatektool.protocol.modbus.pdu import EXCEPTION, crc_bytes
 from fatektool.protocol.modbus.sizes import TELLING, pdu_sizes
+from fatektool.protocol.resync import Measured
 
 
 def _encode(station: int, pdu: bytes, number: int = 0) -> bytes:
@@ -27,19 +28,23 @@ def _encode(station: int, pdu: bytes, number: int = 0) -> bytes:
     return body + crc_bytes(body)
 
 
-class RtuDecoder(ByLength):
+class RtuDecoder(Measured):
     """Cuts RTU frames, requests and answers, out of a stream."""
 
-    def _sizes(self, buffer: bytearray, at: int) -> tuple[int, ...] | None:
+    def _sizes(self, at: int) -> tuple[int, ...] | None:
+        buffer = self._buffer
         if buffer[at] > LAST_STATION:
             return ()
         sizes = pdu_sizes(buffer, at + 1, at + 1 + TELLING)
         return None if sizes is None else tuple(size + 3 for size in sizes)
 
-    def _whole(self, raw: bytes) -> Frame | None:
+    def _frame(self, raw: bytes) -> Frame | None:
         if crc_bytes(raw[:-2]) != raw[-2:]:
             return None
         return Frame(raw[0], raw[1] & ~EXCEPTION, raw[1:-2], raw)
+
+    def _fault(self, raw: bytes) -> FrameError:
+        return FrameError("checksum: the CRC does not hold", raw=raw, checksum=True)
 
 
 RTU: Final = ModbusCodec(

@@ -11,12 +11,13 @@ from __future__ import annotations
 
 from typing import Final
 
+from fatektool.errors import FrameError
 from fatektool.protocol.codec import Frame
 from fatektool.protocol.modbus.codec import ModbusCodec
-from fatektool.protocol.modbus.decoding import ByLength
 from fatektool.protocol.modbus.framing import MAX_PDU, FramePart, Framing, always
 from fatektool.protocol.modbus.pdu import EXCEPTION
 from fatektool.protocol.modbus.sizes import TELLING, pdu_sizes
+from fatektool.protocol.resync import Measured
 
 TCP_HEADER: Final = 7
 
@@ -25,10 +26,11 @@ def _encode(station: int, pdu: bytes, number: int = 0) -> bytes:
     return b"%b\0\0%b%c%b" % (number.to_bytes(2, "big"), (1 + len(pdu)).to_bytes(2, "big"), station, pdu)
 
 
-class TcpDecoder(ByLength):
+class TcpDecoder(Measured):
     """Cuts TCP frames, requests and answers, out of a stream."""
 
-    def _sizes(self, buffer: bytearray, at: int) -> tuple[int, ...] | None:
+    def _sizes(self, at: int) -> tuple[int, ...] | None:
+        buffer = self._buffer
         head = buffer[at : at + TCP_HEADER]
         if any(head[2:4]):
             return ()
@@ -40,9 +42,12 @@ class TcpDecoder(ByLength):
         possible = pdu_sizes(buffer, at + TCP_HEADER, at + TCP_HEADER + min(size, TELLING))
         return (TCP_HEADER + size,) if possible is None or size in possible else ()
 
-    def _whole(self, raw: bytes) -> Frame:
+    def _frame(self, raw: bytes) -> Frame:
         number = int.from_bytes(raw[:2], "big")
         return Frame(raw[6], raw[7] & ~EXCEPTION, raw[7:], raw, number)
+
+    def _fault(self, raw: bytes) -> FrameError:
+        return FrameError("no frame", raw=raw)  # nothing can be wrong with one of the right length
 
 
 def _number(raw: bytes) -> str:

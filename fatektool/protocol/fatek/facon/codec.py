@@ -6,9 +6,8 @@ r"""FACON ASCII frames, both ways the same form (FACON paper, section 2).
 
 The LRC is the sum of all bytes from STX to the last of the data, modulo 256, in two capital hex digits.
 
-The decoder's strategy: hunt for STX, then for ETX. STX never stands inside a frame, so a second one
-before ETX begins a new frame and what stood before it is dropped: a good frame behind a bad one is
-never lost. A frame that passes 508 bytes without ETX is dropped.
+STX never stands inside a frame, so a second one before ETX begins a new frame (``resync``). A frame that
+passes 508 bytes without ETX is dropped.
 """
 
 from __future__ import annotations
@@ -22,6 +21,7 @@ from fatektool.protocol.codec import Frame
 from fatektool.protocol.fatek.codec import FatekCodec
 from fatektool.protocol.fatek.facon.data import DATA
 from fatektool.protocol.plc_errors import meaning_of
+from fatektool.protocol.resync import Delimited
 
 if TYPE_CHECKING:
     from fatektool.protocol.commands import Request
@@ -34,7 +34,6 @@ FRAMING_BYTES: Final = 8  # STX, station, command, LRC, ETX
 MAX_DATA: Final = 500
 MAX_FRAME: Final = FRAMING_BYTES + MAX_DATA
 LAST_STATION: Final = 0xFF
-_MAX_BUFFER: Final = 1 << 16
 
 _PAIRS: Final = [b"%02X" % value for value in range(256)]
 _VALUES: Final = {pair: value for value, pair in enumerate(_PAIRS)}
@@ -69,27 +68,12 @@ def frame_bytes(station: int, command: int, data: bytes) -> bytes:
     return b"%b%b\x03" % (body, lrc(body))
 
 
-class FaconDecoder:
+class FaconDecoder(Delimited):
     """Cuts FACON frames out of a stream, whatever its chunks."""
 
-    def __init__(self) -> None:
-        self._buffer = bytearray()
-
-    def feed(self, data: bytes) -> None:
-        """Take bytes from the wire; of more than 64 KiB not asked for, the oldest are forgotten."""
-        self._buffer += data
-        if len(self._buffer) > _MAX_BUFFER:
-            del self._buffer[:-_MAX_BUFFER]
-
-    def clear(self) -> int:
-        """Forget what was fed and not yet given; return how many bytes that was."""
-        count = len(self._buffer)
-        self._buffer.clear()
-        return count
-
-    def expect_no_more(self) -> bool:
-        """False: behind a frame that has not ended nothing can stand, as STX would have begun another."""
-        return False
+    begin = STX
+    end = ETX
+    longest = MAX_FRAME
 
     def next_frame(self) -> Frame | None:
         """Give the next frame, or None when more bytes are needed.
@@ -98,29 +82,14 @@ class FaconDecoder:
             FrameError: bad bytes, dropped.
         """
         buffer = self._buffer
-        if not buffer:
-            return None
-        if (found := _FRAME.match(buffer)) and not buffer.rfind(STX, 0, found.end()):
+        if (found := _FRAME.match(buffer)) and not buffer.rfind(STX, 0, found.end()):  # by far the most
             parts = found.group(0, 1, 2, 3, 4)
             del buffer[: found.end()]
             return _checked(*parts)
-        start = buffer.find(STX)
-        if start:
-            raise FrameError("noise outside a frame", raw=self._take(start if start > 0 else len(buffer)))
-        end = buffer.find(ETX, 1)
-        again = buffer.find(STX, 1, end if end > 0 else len(buffer))
-        if again > 0:
-            raise FrameError("a frame broke off and another began", raw=self._take(again))
-        if end < 0:
-            if len(buffer) >= MAX_FRAME:
-                raise FrameError(f"no end within {MAX_FRAME} bytes", raw=self._take(len(buffer)))
-            return None
-        return parse_frame(self._take(end + 1))
+        return super().next_frame()
 
-    def _take(self, count: int) -> bytes:
-        taken = bytes(self._buffer[:count])
-        del self._buffer[:count]
-        return taken
+    def _parse(self, raw: bytes) -> Frame:
+        return parse_frame(raw)
 
 
 def parse_frame(raw: bytes) -> Frame:

@@ -9,11 +9,8 @@ r"""M-series binary frames (M-series paper, section 1).
 
 The CRC is CRC-16/MODBUS over length and payload.
 
-The decoder's strategy: hunt for 51 10 or 52 10 and a length that a frame can have, then wait for as many
-bytes. 55 AA may stand in a payload, and so may a whole frame: nothing but the length says where a frame ends.
-If what came then is no frame, its header was none: it is dropped up to the next that could be one, so a good
-frame behind a bad one is found, even one that the bad one's length had covered. The same is done with a frame
-that has not come whole when its time is over (``expect_no_more``).
+55 AA may stand in a payload, and so may a whole frame: nothing but the length says where a frame ends. How
+the next is found behind a wrong length or noise: ``resync``.
 
 The tables of the paper allow 262 bytes of payload at most: 45 with 256 discretes. How long an answer to 53 is
 nobody says, so up to 453 are taken, 64 items of 7 bytes and 5 before them, and a length that lies makes no
@@ -32,6 +29,7 @@ from fatektool.protocol.fatek.codec import FatekCodec
 from fatektool.protocol.fatek.mseries.crc import crc_bytes
 from fatektool.protocol.fatek.mseries.data import DATA
 from fatektool.protocol.fatek.mseries.errors import meaning_of
+from fatektool.protocol.resync import Measured
 
 if TYPE_CHECKING:
     from fatektool.protocol.commands import Request
@@ -47,7 +45,7 @@ MIN_PAYLOAD: Final = 2  # station, command
 MAX_PAYLOAD: Final = 5 + 64 * 7
 MAX_FRAME: Final = FRAMING_BYTES + MAX_PAYLOAD
 LAST_STATION: Final = 0xFF
-_MAX_BUFFER: Final = 1 << 16
+_SHORTEST_BEGINNING: Final = 4  # header, ID, length
 
 _BEGINNING: Final = re.compile(
     rb"[\x51\x52](?:\Z|\x10(?:\Z|\x00(?:\Z|[\x02-\xFF])|\x01(?:\Z|[\x00-\x%02X])))" % (MAX_PAYLOAD & 0xFF)
@@ -76,75 +74,33 @@ def frame_bytes(header: int, station: int, command: int, data: bytes) -> bytes:
     return b"%c%c%b%b%b" % (header, ID, checked, crc_bytes(checked), TERMINATOR)
 
 
-class MseriesDecoder:
+class MseriesDecoder(Measured):
     """Cuts M-series frames out of a stream, whatever its chunks."""
 
-    def __init__(self) -> None:
-        self._buffer = bytearray()
-        self._all_came = False
+    def _sizes(self, at: int) -> tuple[int, ...] | None:
+        begun = _BEGINNING.match(self._buffer, at)
+        if begun is None:
+            return ()
+        if begun.end() - at < _SHORTEST_BEGINNING:
+            return (FRAMING_BYTES + MIN_PAYLOAD,)  # at least; the length has not come
+        return (FRAMING_BYTES + int.from_bytes(self._buffer[at + 2 : at + 4], "big"),)
 
-    def feed(self, data: bytes) -> None:
-        """Take bytes from the wire; of more than 64 KiB not asked for, the oldest are forgotten."""
-        self._all_came = False
-        self._buffer += data
-        if len(self._buffer) > _MAX_BUFFER:
-            del self._buffer[:-_MAX_BUFFER]
-
-    def clear(self) -> int:
-        """Forget what was fed and not yet given; return how many bytes that was."""
-        left = len(self._buffer)
-        self._buffer.clear()
-        return left
-
-    def expect_no_more(self) -> bool:
-        """Let go of a frame that began and does not end, and look at what stands behind its beginning."""
-        self._all_came = bool(self._buffer)
-        return self._all_came
-
-    def next_frame(self) -> Frame | None:
-        """Give the next whole frame, or None if more bytes are needed.
-
-        Raises:
-            FrameError: bytes that are no frame; they are dropped.
-        """
-        buffer = self._buffer
-        if not buffer:
-            return None
-        begins = _BEGINNING.match(buffer)
-        if begins is None:
-            raise FrameError(_no_beginning(buffer), raw=self._take(self._next_beginning(0)))
-        size = FRAMING_BYTES + int.from_bytes(buffer[2:4], "big")
-        if len(buffer) < max(size, FRAMING_BYTES + MIN_PAYLOAD):
-            if not self._all_came:
-                return None
-            raise FrameError("a frame broke off", raw=self._take(self._next_beginning(1)))
-        try:
-            frame = parse_frame(bytes(buffer[:size]))
-        except FrameError as error:
-            drop = self._next_beginning(1)
-            if drop < size or not error.checksum:
-                raise FrameError(error.message, raw=self._take(drop)) from None
-            del buffer[:size]
-            raise
-        del buffer[:size]
-        return frame
-
-    def _next_beginning(self, at: int) -> int:
-        """Where the next frame may begin; the end of all bytes if nowhere."""
-        found = _BEGINNING.search(self._buffer, at)
+    def _next_beginning(self) -> int:
+        found = _BEGINNING.search(self._buffer, 1)
         return found.start() if found else len(self._buffer)
 
-    def _take(self, count: int) -> bytes:
-        taken = bytes(self._buffer[:count])
-        del self._buffer[:count]
-        return taken
+    def _noise(self) -> str:
+        buffer = self._buffer
+        if len(buffer) >= 4 and buffer[0] in {QUERY, RESPONSE} and buffer[1] == ID:
+            size = int.from_bytes(buffer[2:4], "big")
+            return f"length: expected {MIN_PAYLOAD} to {MAX_PAYLOAD}, got {size}"
+        return super()._noise()
 
+    def _frame(self, raw: bytes) -> Frame | None:
+        return _frame_of(raw)
 
-def _no_beginning(buffer: bytearray) -> str:
-    if len(buffer) >= 4 and buffer[0] in {QUERY, RESPONSE} and buffer[1] == ID:
-        size = int.from_bytes(buffer[2:4], "big")
-        return f"length: expected {MIN_PAYLOAD} to {MAX_PAYLOAD}, got {size}"
-    return "noise outside a frame"
+    def _fault(self, raw: bytes) -> FrameError:
+        return _fault_of(raw)
 
 
 def parse_frame(raw: bytes) -> Frame:
@@ -163,14 +119,27 @@ def parse_frame(raw: bytes) -> Frame:
     size = int.from_bytes(raw[2:4], "big")
     if len(raw) != FRAMING_BYTES + size:
         raise FrameError(f"length: {size} says {FRAMING_BYTES + size} bytes, got {len(raw)}", raw=raw)
+    frame = _frame_of(raw)
+    if frame is None:
+        raise _fault_of(raw)
+    return frame
+
+
+def _frame_of(raw: bytes) -> Frame | None:
+    """The frame that bytes of the right length are, or None."""
+    if raw[-2:] != TERMINATOR or raw[-4:-2] != crc_bytes(raw[2:-4]):
+        return None
+    return Frame(raw[4], raw[5], raw[6:-4], raw)
+
+
+def _fault_of(raw: bytes) -> FrameError:
+    """Why they are none."""
     if raw[-2:] != TERMINATOR:
         got = raw[-2:].hex(" ").upper()
-        raise FrameError(f"no end where the length says: expected 55 AA, got {got}", raw=raw)
-    expected = crc_bytes(raw[2:-4])
-    if raw[-4:-2] != expected:
-        got = raw[-4:-2].hex(" ").upper()
-        raise FrameError(f"checksum: expected {expected.hex(' ').upper()}, got {got}", raw=raw, checksum=True)
-    return Frame(raw[4], raw[5], raw[6:-4], raw)
+        return FrameError(f"no end where the length says: expected 55 AA, got {got}", raw=raw)
+    expected = crc_bytes(raw[2:-4]).hex(" ").upper()
+    got = raw[-4:-2].hex(" ").upper()
+    return FrameError(f"checksum: expected {expected}, got {got}", raw=raw, checksum=True)
 
 
 class MseriesCodec(FatekCodec):
