@@ -26,7 +26,9 @@ if TYPE_CHECKING:
     from fatektool.ladder.networks import Network
 
 DEEPEST: Final = 100
-"""So many levels of series in parallels are drawn, and no more: the vendor's program has 16 rows."""
+"""So many levels of blocks a circuit has, and no more; the vendor's program has networks of 16 rows."""
+LARGEST: Final = 500
+"""So many instructions; the vendor's program has networks of 16 rows and 22 columns."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,6 +102,8 @@ def circuit_of(network: Network) -> Circuit | NoCircuit:
     """The circuit that a network is; or why it is none."""
     reader = _Reader()
     number = network.first
+    if len(network.instructions) > LARGEST:
+        return NoCircuit(f"it has more than {LARGEST} instructions", number)
     try:
         for number, _, instruction in network.places:
             reader.take(Leaf(number, instruction))

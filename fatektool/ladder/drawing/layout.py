@@ -118,33 +118,41 @@ class _Layout:
     def _row(self, parts: Sequence[Part], place: _Place) -> int:
         """What conducts, then what hangs there, then what goes on; give the next row that is free below."""
         parts = [part for part in parts if not (isinstance(part, Leaf) and part.role is Role.MARK)]
-        count = next((number for number, part in enumerate(parts) if _hangs(part)), len(parts))
-        start = place.column
-        place, below = self._run([part for part in parts[:count] if not isinstance(part, Box)], place)
-        if count == len(parts) and place.column == start:
-            self._wire(place, start + 1)
+        below = place.row + 1
+        while parts:
+            count = next((number for number, part in enumerate(parts) if _hangs(part)), len(parts))
+            start = place.column
+            place, under = self._run([part for part in parts[:count] if not isinstance(part, Box)], place)
+            if count == len(parts) and place.column == start:
+                self._wire(place, start + 1)
+            hanging = []
+            while count < len(parts) and (_hangs(parts[count]) or _is_store(parts[count])):
+                hanging.append(parts[count])
+                count += 1
+            parts = parts[count:]
+            row, last = self._hanging(hanging, place)
+            below = max(below, under, row)
+            if parts and hanging:
+                last = row
+            self._link(place, last)
+            place = place._replace(row=last)
+        return max(below, place.row + 1)
+
+    def _hanging(self, parts: Sequence[Part], place: _Place) -> tuple[int, int]:
+        """Coils and boxes, one below the other; give the next free row below, and the row of the last."""
         row = last = place.row
-        while count < len(parts):
-            part = parts[count]
+        for part in parts:
             if _is_store(part):
                 self._run([part], place)
-            elif isinstance(part, Leaf | Box) and _hangs(part):
-                last = row
-                row = self._hang(part, place._replace(row=row))
+                continue
+            last = row
+            if isinstance(part, Box):
+                row = self._box(part, place._replace(row=row))
             else:
-                last = row
-                row = self._row(parts[count:], place._replace(row=row))
-                break
-            count += 1
-        self._link(place, last)
-        return max(row, below)
-
-    def _hang(self, part: Leaf | Box, place: _Place) -> int:
-        """A coil or a box; give the next row that is free below."""
-        if isinstance(part, Box):
-            return self._box(part, place)
-        self._cell(part, place, ends=True)
-        return place.row + 1
+                assert isinstance(part, Leaf)  # noqa: S101  # a coil
+                self._cell(part, place._replace(row=row), ends=True)
+                row += 1
+        return row, last
 
     def _run(self, nodes: Sequence[Node], place: _Place) -> tuple[_Place, int]:
         """What conducts, one behind the other; give its end, and the next row that is free below."""

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fatektool.ladder.circuit.nodes import Circuit
-from fatektool.ladder.circuit.reading import circuit_of
+from fatektool.ladder.circuit.reading import LARGEST, circuit_of
 from fatektool.ladder.drawing.layout import plan_of
 from fatektool.ladder.drawing.signs import frame_of, sign_of
 from fatektool.ladder.drawing.text.canvas import Pen
@@ -66,6 +66,25 @@ def test_every_encoding_shows_what_it_has() -> None:
     assert "^" in drawn("ORG TU M300, OUT Y0", encoding="cp852")
     assert "Zawór" in drawn("ORG X0, AND M3, OUT Y0", encoding="cp852")
     assert drawn("ORG X0, OUT Y0", encoding="no such").isascii()
+
+
+@pytest.mark.parametrize(
+    "texts",
+    [
+        ["ORG X0", *["AND X0"] * (LARGEST - 2), "OUT Y0"],
+        ["ORG X0", *["OR Y0"] * (LARGEST - 2), "OUT Y0"],
+        ["ORG X0", *["OUT Y0"] * (LARGEST - 1)],
+        ["ORG X0", *["AND X0", "OUT Y0"] * (LARGEST // 2 - 1)],
+        ["ORG X0", "OUT TR 0", "OUT Y0", *["LD TR 0", "AND X0", "OUT Y0"] * (LARGEST // 3 - 1)],
+        ["ORG X0", *["LD X1"] * 90, *["ORLD", "AND X0"] * 90, "OUT Y0"],
+        ["ORG X0", *["FUN 15 (+1) C0", "FO 0"] * 90, "OUT Y0"],
+    ],
+    ids=["row", "branches", "coils", "steps", "stores", "deep", "functions"],
+)
+def test_the_largest_networks_are_drawn(texts: list[str]) -> None:
+    lines = drawn(", ".join(texts)).splitlines()
+    assert len(lines) > 40
+    assert max(map(width_of, lines)) <= 80
 
 
 TEXTS = st.text(st.sampled_from("aŁó水泵 é\u0301\u202e\t\x1b한"), max_size=16)
