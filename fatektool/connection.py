@@ -8,10 +8,10 @@ from time import sleep
 from typing import TYPE_CHECKING
 
 from fatektool.address import PlcAddress
+from fatektool.callbacks import ignore
 from fatektool.client import Plc
 from fatektool.exchange.link import Link
 from fatektool.protocol.codec import require_commands
-from fatektool.transport.base import no_note
 from fatektool.transport.open import ONE_TRY, open_transport
 from fatektool.transport.patience import Patience, PatientTransport
 from fatektool.transport.target import TargetKind
@@ -39,9 +39,9 @@ def connect(
     limit: Limit | None = None,
     lend: bool = False,
     shared: SharedLine | None = None,
-    note: Callable[[str], None] = no_note,
-    waiting: Callable[[str], None] = no_note,
-    warn: Callable[[str], None] = no_note,
+    note: Callable[[str], None] = ignore,
+    waiting: Callable[[str], None] = ignore,
+    warn: Callable[[str], None] = ignore,
     **settings: Unpack[Settings],
 ) -> Plc:
     """Open the line to a PLC. Nothing is sent yet, but for ``modbus_map="custom"``.
@@ -152,8 +152,8 @@ def open_line(
     on_lock: Callable[[PortLock], object] = lambda _lock: None,
     on_lent: Callable[[LentTransport], object] | None = None,
     *,
-    note: Callable[[str], None] = no_note,
-    waiting: Callable[[str], None] = no_note,
+    note: Callable[[str], None] = ignore,
+    waiting: Callable[[str], None] = ignore,
     patience: Patience = ONE_TRY,
 ) -> Transport:
     """Open a line: ``connect`` for one PLC on it, a scan for several.

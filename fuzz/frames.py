@@ -31,6 +31,7 @@ from fatektool.protocol.commands import (
 )
 from fatektool.protocol.elements import Element
 from fatektool.protocol.explain import Role
+from fatektool.protocol.fatek.mseries.codec import RESPONSE
 from fatektool.protocol.registry import new_explainer
 from tests.protocol.decoding import decoded
 
@@ -92,11 +93,12 @@ def _say(codec: FaconCodec | MseriesCodec, frame: Frame) -> None:
     if frame.station > LAST_STATION:
         return
     try:
-        request = codec.parse_request(frame)
+        request = codec.data.parse_request(frame.command, frame.data)
     except FrameError:
         pass
     else:
-        assert codec.encode(frame.station, request) == frame.raw
+        if frame.raw[0] != RESPONSE:  # an answer may have the data of a request
+            assert codec.encode(frame.station, request) == frame.raw
     for asked in ASKED:
         if asked.command != frame.command or asked.command not in codec.commands:
             continue

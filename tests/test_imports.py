@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 ROOT = Path(fatektool.__file__).parent
 
 RANKS = {
+    "callbacks": 0,
     "errors": 0,
     "protocols": 0,
     "version": 0,

@@ -35,6 +35,7 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from fatektool.callbacks import ignore
 from fatektool.errors import (
     FrameError,
     GatewayTimeout,
@@ -52,7 +53,6 @@ from fatektool.exchange.sender import Sender
 from fatektool.exchange.state import MARGIN, LinkState
 from fatektool.protocol.codec import require_station
 from fatektool.protocol.read_back import read_back
-from fatektool.transport.base import no_note
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -99,8 +99,8 @@ class Link:
         retries: int = 3,
         nonces: Callable[[], bytes] = lambda: os.urandom(4).hex().upper().encode(),
         read_only: bool = False,
-        note: Callable[[str], None] = no_note,
-        warn: Callable[[str], None] = no_note,
+        note: Callable[[str], None] = ignore,
+        warn: Callable[[str], None] = ignore,
     ) -> None:
         require_station(codec, station)
         self.state = state = LinkState(

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from fatektool.callbacks import ignore
 from fatektool.errors import FrameError, TransportTimeout
 from fatektool.exchange.outstanding import Outstanding
 from fatektool.exchange.state import MOST_EXTENSION
@@ -53,8 +54,8 @@ class Receiver:
         self.outstanding = Outstanding(state)
         self.unsolicited = 0
         self.needs_fence = False
-        self.on_stray: Callable[[Frame], object] = _ignore
-        self.on_bad_bytes: Callable[[FrameError], object] = _ignore
+        self.on_stray: Callable[[Frame], object] = ignore
+        self.on_bad_bytes: Callable[[FrameError], object] = ignore
         self.instead = ""
         self.gateway_error: GatewayTimeout | None = None
         self.wrong_number = False
@@ -201,7 +202,3 @@ class Receiver:
             if frame is None:
                 return
             self.note_stray(frame)
-
-
-def _ignore(_: object) -> None:
-    pass

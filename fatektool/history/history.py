@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from itertools import islice
 from typing import TYPE_CHECKING, Final
 
+from fatektool.callbacks import ignore
 from fatektool.errors import DataError, FatektoolError, UsageError
 from fatektool.files.atomic import write_whole
 from fatektool.history.names import require_name
@@ -20,7 +21,6 @@ from fatektool.history.trees import file_in, files
 from fatektool.history.writing import writing
 from fatektool.program.archive import Backup
 from fatektool.program.compare import Comparison, compare
-from fatektool.transport.base import no_note
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterator
@@ -83,7 +83,7 @@ class History:
         folder: Path,
         *,
         wait_s: float = 60.0,
-        waiting: Callable[[str], None] = no_note,
+        waiting: Callable[[str], None] = ignore,
         clock: Callable[[], float] = time.time,
     ) -> None:
         self.folder = folder

@@ -27,11 +27,11 @@ import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
+from fatektool.callbacks import ignore
 from fatektool.errors import PortBusy, UsageError
 from fatektool.files.atomic import file_error, sync_folder, write_synced
 from fatektool.history.repository import is_repository
 from fatektool.history.sharing import FILE_MODE, FOLDER_MODE, Rights, rights_of
-from fatektool.transport.base import no_note
 from fatektool.transport.lock import PortLock
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ _NO_LINKS: Final = {
 
 
 @contextlib.contextmanager
-def writing(folder: Path, wait_s: float, waiting: Callable[[str], None] = no_note) -> Iterator[None]:
+def writing(folder: Path, wait_s: float, waiting: Callable[[str], None] = ignore) -> Iterator[None]:
     """Hold the lock of a history; the history is created if it does not exist.
 
     Args:

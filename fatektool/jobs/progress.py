@@ -6,7 +6,3 @@ from collections.abc import Callable
 
 Progress = Callable[[str, int, int], None]
 """Called with a phase in words, the pages done and the pages in all."""
-
-
-def no_progress(phase: str, done: int, total: int) -> None:
-    """Told to nobody."""

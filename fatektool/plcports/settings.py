@@ -38,7 +38,6 @@ SETTING_ELEMENTS: Final = (
     *("R4149", "R4163", "M1959", "M1964", "M1965", "M1966"),
     *PHONE_REGISTERS,
 )
-DEFAULT_DETECTION_MS: Final = 12
 ABNORMAL: Final = {
     0x0A: "no answer from the slave",
     0x0B: "damaged data",

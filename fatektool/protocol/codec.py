@@ -126,13 +126,6 @@ class Codec(Protocol):
             UsageError: the request cannot be said in this protocol.
         """
 
-    def parse_request(self, frame: Frame) -> Request[object]:
-        """The request that a frame holds.
-
-        Raises:
-            FrameError: it holds none.
-        """
-
     def parse_answer(self, request: Request[A], frame: Frame) -> A:
         """What a frame answers to this request; its station and command are the caller's to check.
 

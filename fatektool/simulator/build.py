@@ -213,22 +213,6 @@ def build_simulation(
     return simulation
 
 
-def build_line(
-    stations: Iterable[int] | None = None,
-    model: str | None = None,
-    *,
-    state: str | os.PathLike[str] | None = None,
-    faults: Iterable[str] = (),
-    seed: int = 0,
-    baud: float | None = None,
-    scan_ms: float = 0.0,
-) -> SimulatedLine:
-    """One line to a new simulator, for who needs no more than the line: see ``build_simulation``."""
-    return build_simulation(
-        stations, model, state=state, faults=faults, seed=seed, baud=baud, scan_ms=scan_ms
-    ).line()
-
-
 def _with_program(
     chosen: Model, pages: list[bytes] | None, ladder_words: int | None, seed: int, *, swapped: bool
 ) -> tuple[Model, list[bytes]]:

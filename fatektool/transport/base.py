@@ -91,10 +91,6 @@ class LineSettings:
         return f"{self.baud} {self.format}"
 
 
-def no_note(_: str) -> None:
-    """What is told to nobody."""
-
-
 class Transport(ABC):
     """A medium that carries bytes to a PLC and back.
 

@@ -30,8 +30,8 @@ from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING, Final
 
+from fatektool.callbacks import ignore
 from fatektool.errors import PortBusy, UsageError
-from fatektool.transport.base import no_note
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -134,7 +134,7 @@ class PortLock:
         resource: str,
         wait_s: float,
         *,
-        waiting: Callable[[str], object] = no_note,
+        waiting: Callable[[str], object] = ignore,
         clock: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:

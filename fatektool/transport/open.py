@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from fatektool.callbacks import ignore
 from fatektool.errors import UsageError
-from fatektool.transport.base import no_note
 from fatektool.transport.lock import PortLock
 from fatektool.transport.patience import Patience
 from fatektool.transport.target import Target, TargetKind
@@ -29,8 +29,8 @@ def open_transport(
     *,
     lock_wait_s: float = 10.0,
     low_latency: bool = True,
-    note: Callable[[str], None] = no_note,
-    waiting: Callable[[str], None] = no_note,
+    note: Callable[[str], None] = ignore,
+    waiting: Callable[[str], None] = ignore,
     on_lock: Callable[[PortLock], object] = lambda _lock: None,
     patience: Patience = ONE_TRY,
 ) -> Transport:

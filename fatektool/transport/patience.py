@@ -15,8 +15,9 @@ import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, TypeVar
 
+from fatektool.callbacks import ignore
 from fatektool.errors import TransportClosed
-from fatektool.transport.base import Transport, no_note
+from fatektool.transport.base import Transport
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -42,7 +43,7 @@ class Patience:
     timeout_s: float = 0.5
     retries: int = 0
     pause: Callable[[float], object] = time.sleep
-    note: Callable[[str], None] = no_note
+    note: Callable[[str], None] = ignore
 
     def pause_s(self, losses: int) -> float:
         """How long to wait after so many failures in a row, from 1: half a time-out, one, two at most."""

@@ -19,6 +19,7 @@ from tests.planner.exhaustive import places_of, wire_bytes
 from tests.planner.plain import merged, one_each
 from tests.planner.sets import TURNAROUNDS, element_sets, named, scattered, side_by_side
 from tests.plcs import Simulated, simulated
+from tests.protocol.decoding import request_of
 
 AREAS = {
     "X": 256,
@@ -96,7 +97,7 @@ def test_all_is_covered_and_no_element_is_torn(elements: list[Element], turnarou
     assert len(plan) <= len(set(elements))
     for request in plan:
         frame = parse_frame(FACON.encode(1, request))  # it can be said: no limit is broken
-        assert FACON.parse_request(frame) == request
+        assert request_of(frame) == request
 
 
 @given(element_sets(most=20), turnarounds, st.randoms(use_true_random=False))

@@ -20,6 +20,7 @@ from tests.night import examples
 from tests.planner.exhaustive import places_of
 from tests.planner.sets import TURNAROUNDS, apart, element_sets, named, scattered
 from tests.plcs import simulated
+from tests.protocol.decoding import request_of
 
 if TYPE_CHECKING:
     from fatektool.simulator.memory import Memory
@@ -110,7 +111,7 @@ def test_each_place_once_and_no_element_torn(elements: list[Element], turnaround
     assert len(plan) <= len(elements)
     for request in plan:
         frame = parse_frame(FACON.encode(1, request))  # it can be said: no limit is broken
-        assert FACON.parse_request(frame) == request
+        assert request_of(frame) == request
 
 
 @given(element_sets(most=20), turnarounds, st.randoms(use_true_random=False))

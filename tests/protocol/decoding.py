@@ -11,6 +11,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from fatektool.protocol.codec import Codec, Decoder, Frame
+    from fatektool.protocol.commands import Request
+    from fatektool.protocol.fatek.codec import FatekCodec
 
 
 def drained(decoder: Decoder) -> list[Frame | FrameError]:
@@ -49,6 +51,11 @@ def one_frame(raw: bytes, codec: Codec = FACON) -> Frame:
     (frame,) = decoded(raw, codec=codec)
     assert not isinstance(frame, FrameError)
     return frame
+
+
+def request_of(frame: Frame, codec: FatekCodec = FACON) -> Request[object]:
+    """The request that a frame holds."""
+    return codec.data.parse_request(frame.command, frame.data)
 
 
 def framed(body: bytes) -> bytes:

@@ -30,7 +30,7 @@ from fatektool.protocol.commands import (
 from fatektool.protocol.elements import Element
 from fatektool.protocol.fatek.facon.codec import FACON, frame_bytes
 from fatektool.protocol.fatek.mseries.codec import MSERIES
-from tests.protocol.decoding import one_frame, query
+from tests.protocol.decoding import one_frame, query, request_of
 
 X0, Y0, R0, DR0, WM0, DWM0 = (Element.parse(text) for text in ("X0", "Y0", "R0", "DR0", "WM0", "DWM0"))
 PAGE = bytes(range(128))
@@ -119,9 +119,9 @@ def test_how_many_discretes() -> None:
 
 def test_a_frame_of_more_than_that_is_no_request() -> None:
     with pytest.raises(FrameError, match="expected 1 to 64 elements, got 65"):
-        FACON.parse_request(one_frame(frame_bytes(1, 0x46, b"41R00000")))
+        request_of(one_frame(frame_bytes(1, 0x46, b"41R00000")))
     with pytest.raises(FrameError, match="expected 1 to 64 elements, got 65"):
-        MSERIES.parse_request(one_frame(query("01 46 41 52 00 00"), MSERIES))
+        request_of(one_frame(query("01 46 41 52 00 00"), MSERIES), MSERIES)
 
 
 def test_256_is_written_00() -> None:
@@ -136,7 +136,7 @@ def test_256_is_written_00() -> None:
         WriteDiscretes(Y0, (True,) * 256),
     ]
     for request in most:
-        assert FACON.parse_request(one_frame(FACON.encode(1, request))) == request
+        assert request_of(one_frame(FACON.encode(1, request))) == request
 
 
 def test_a_run_ends_within_its_kind() -> None:
@@ -206,7 +206,7 @@ def test_a_wrong_value_is_named_by_its_own_element() -> None:
 )
 def test_64_words_to_read(elements: tuple[Element, ...]) -> None:
     request = ReadMixed(elements)
-    assert FACON.parse_request(one_frame(FACON.encode(1, request))) == request
+    assert request_of(one_frame(FACON.encode(1, request))) == request
     with pytest.raises(UsageError, match=r"expected 1 to 64 words in all .*, got 65"):
         ReadMixed((*elements, Y0))
     with pytest.raises(UsageError, match=r"expected 1 to 64 words in all .*, got 66"):
@@ -219,7 +219,7 @@ def test_64_words_to_read(elements: tuple[Element, ...]) -> None:
 )
 def test_32_words_to_write(writes: tuple[tuple[Element, int], ...]) -> None:
     request = WriteMixed(writes)
-    assert FACON.parse_request(one_frame(FACON.encode(1, request))) == request
+    assert request_of(one_frame(FACON.encode(1, request))) == request
     with pytest.raises(UsageError, match=r"expected 1 to 32 words in all .*, got 33"):
         WriteMixed((*writes, (R0, 0)))
 

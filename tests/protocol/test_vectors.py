@@ -6,7 +6,7 @@ import pytest
 
 from fatektool.errors import FrameError
 from fatektool.protocol.commands import Command
-from tests.protocol.decoding import decoded, frames, one_frame
+from tests.protocol.decoding import decoded, frames, one_frame, request_of
 from tests.protocol.fatek.mseries.vectors import EXAMPLES as MSERIES_EXAMPLES
 from tests.protocol.spoken import SPOKEN, Spoken, each_example, each_frame, each_protocol
 from tests.protocol.vectors import EXAMPLES, MISPRINTS, Example, Misprint
@@ -21,7 +21,7 @@ def test_request_becomes_the_papers_bytes(spoken: Spoken, example: Example) -> N
 def test_the_papers_bytes_become_the_request(spoken: Spoken, example: Example) -> None:
     frame = one_frame(example.asks, spoken.codec)
     assert (frame.station, frame.command) == (1, example.request.command)
-    assert spoken.codec.parse_request(frame) == example.request
+    assert request_of(frame, spoken.codec) == example.request
 
 
 @each_example

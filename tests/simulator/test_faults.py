@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from fatektool.errors import UsageError
-from fatektool.simulator.build import Simulation, build_line, build_simulation
+from fatektool.simulator.build import Simulation, build_simulation
 from fatektool.simulator.faults import FAULT_KINDS, PROBABILITY_KINDS, parse_faults
 from tests.simulator.wire import frame, sent
 
@@ -84,7 +84,7 @@ def test_wrong_station_is_any_other_with_a_right_checksum() -> None:
 
 
 def test_late_comes_after_the_next_request_and_before_its_answer() -> None:
-    line = build_line(faults=["late=1"])
+    line = build_simulation(faults=["late=1"]).line()
     assert sent(line, ASK) == b""
     assert sent(line, frame("4601R00008")) == ANSWER
     # Any request that was received lets it go, one that nobody answers too.
@@ -101,7 +101,7 @@ def test_late_belongs_to_its_own_line() -> None:
 
 
 def test_slow_is_late_by_slow_s() -> None:
-    assert build_line(faults=["slow=1"]).receive(ASK, 10.0) == [(10.8, ANSWER)]
+    assert build_simulation(faults=["slow=1"]).line().receive(ASK, 10.0) == [(10.8, ANSWER)]
     assert build_simulation(faults=["slow=1"], slow_s=2.0).line().receive(ASK, 10.0) == [(12.0, ANSWER)]
 
 
@@ -125,7 +125,7 @@ def test_lying_write_is_acknowledged_and_not_made(write: str, acknowledged: str)
 
 
 def test_lying_write_still_refuses_what_is_wrong() -> None:
-    line = build_line(faults=["lying-write=1"])
+    line = build_simulation(faults=["lying-write=1"]).line()
     assert sent(line, frame("4501Y02561")) == frame("45A")
     assert sent(line, frame("411")) == frame("410")
     assert sent(line, frame("40")) == frame("400015400")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from fatektool.errors import DataError, UsageError
-from fatektool.simulator.build import build_line, build_plcs, build_simulation
+from fatektool.simulator.build import build_plcs, build_simulation
 from fatektool.simulator.memory import DiscreteAction
 from fatektool.simulator.models import MODELS
 from fatektool.simulator.plc import SimulatedPlc
@@ -147,7 +147,7 @@ def test_save_if_changed(tmp_path: Path) -> None:
 
 def test_a_page_is_in_the_file_when_it_is_acknowledged(tmp_path: Path) -> None:
     path = tmp_path / "plc.json"
-    line = build_line(state=path, faults=["power-cut=2"])
+    line = build_simulation(state=path, faults=["power-cut=2"]).line()
     for page in (0, 1):
         sent(line, frame(f"50{page:04X}" + "AB" * 128))
     pages = build_simulation(state=path).plcs[1].pages
@@ -160,7 +160,7 @@ def test_a_link_to_a_state_file_stays_one(tmp_path: Path) -> None:
     build_simulation(state=real)
     link.symlink_to(real)
     before = real.read_text()
-    sent(build_line(state=link), frame("411"))
+    sent(build_simulation(state=link).line(), frame("411"))
     assert link.is_symlink()
     assert real.read_text() != before
 

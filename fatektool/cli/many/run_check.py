@@ -6,17 +6,18 @@ from datetime import UTC, datetime
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from fatektool.callbacks import ignore
 from fatektool.cli.many.documents import check_document
 from fatektool.cli.many.outcome import JobResult
 from fatektool.cli.shared.unfinished import unfinished
 from fatektool.jobs.check.plc import check_plc
-from fatektool.jobs.progress import Progress, no_progress
 
 if TYPE_CHECKING:
     from fatektool.cli.shared.connection import Connection
     from fatektool.cli.shared.output import Voice
     from fatektool.jobs.check.plc import CheckPlan
     from fatektool.jobs.check.result import CheckResult
+    from fatektool.jobs.progress import Progress
     from fatektool.transport.limit import Limit
     from fatektool.transport.shared_line import SharedLine
 
@@ -28,7 +29,7 @@ def run_check(
     *,
     limit: Limit,
     shared: SharedLine | None = None,
-    progress: Progress = no_progress,
+    progress: Progress = ignore,
 ) -> CheckResult:
     """Check one PLC.
 

@@ -155,12 +155,12 @@ class ProgressBar:
     """
 
     def __init__(self, unit: str, *, shown: bool) -> None:
-        from fatektool.jobs.progress import no_progress
+        from fatektool.callbacks import ignore
 
         self._unit = unit
         self._shown = shown
         self._tasks: dict[str, TaskID] = {}
-        self.update: Progress = no_progress
+        self.update: Progress = ignore
 
     def __enter__(self) -> Self:
         self._begin()

@@ -25,12 +25,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
+from fatektool.callbacks import ignore
 from fatektool.errors import DataError, FatektoolError, UsageError
 from fatektool.jobs.check.age import age_words
 from fatektool.jobs.check.result import CheckResult, State
 from fatektool.jobs.programs.safekeeping import age_s, require_ladder
 from fatektool.jobs.programs.verify import verify_file
-from fatektool.jobs.progress import Progress, no_progress
 from fatektool.jobs.write_back.record import RESTORE
 from fatektool.program.archive import load_backup
 from fatektool.project.program_file import load_program
@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fatektool.client import Plc
+    from fatektool.jobs.progress import Progress
     from fatektool.jobs.write_back.record import Unfinished
     from fatektool.project.program_file import ProgramFile
 
@@ -70,7 +71,7 @@ def check_plc(
     *,
     unfinished: Callable[[], Iterable[Unfinished]],
     now: datetime,
-    progress: Progress = no_progress,
+    progress: Progress = ignore,
 ) -> CheckResult:
     """Check one PLC, and its backup whether the PLC answers or not.
 
@@ -104,7 +105,7 @@ def _check_plc(
     *,
     expect: str,
     reference: Path | None,
-    progress: Progress = no_progress,
+    progress: Progress = ignore,
 ) -> None:
     """Check a PLC's status, then its program; ``found`` gets the facts as far as the line holds."""
     clock = plc.link.transport.clock

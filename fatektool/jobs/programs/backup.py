@@ -5,14 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from fatektool.callbacks import ignore
 from fatektool.files.times import utc
 from fatektool.jobs.programs.reading import ProgramReading, read_program, read_program_twice
-from fatektool.jobs.progress import Progress, no_progress
 from fatektool.program.archive import Backup, Source
 from fatektool.version import __version__
 
 if TYPE_CHECKING:
     from fatektool.client import Plc
+    from fatektool.jobs.progress import Progress
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +34,7 @@ def read_backup(
     *,
     single_pass: bool = False,
     any_header: bool = False,
-    progress: Progress = no_progress,
+    progress: Progress = ignore,
 ) -> BackupResult:
     """``backup``, with the time that it took; arguments and errors are the same."""
     clock = plc.link.transport.clock
@@ -47,7 +48,7 @@ def backup(
     *,
     single_pass: bool = False,
     any_header: bool = False,
-    progress: Progress = no_progress,
+    progress: Progress = ignore,
 ) -> Backup:
     """Read a PLC's program into a backup. ``save_backup`` writes it to a file.
 

@@ -16,8 +16,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
+from fatektool.callbacks import ignore
 from fatektool.errors import DataError, LineError, PlcRefused
-from fatektool.jobs.progress import Progress, no_progress
 from fatektool.program.compare import compare
 from fatektool.program.image import Program, is_whole, page_count, ranges
 
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fatektool.client import Plc
+    from fatektool.jobs.progress import Progress
     from fatektool.protocol.status import DetailedStatus
 
 MOST_PASSES: Final = 5
@@ -50,7 +51,7 @@ class ProgramReading:
 def read_program(
     plc: Plc,
     phase: str = "reading",
-    progress: Progress = no_progress,
+    progress: Progress = ignore,
     status: DetailedStatus | None = None,
 ) -> ProgramReading:
     """Read 53 and all pages, once.
@@ -119,7 +120,7 @@ def gives_page(plc: Plc, page: int) -> bool:
 
 def read_program_twice(
     plc: Plc,
-    progress: Progress = no_progress,
+    progress: Progress = ignore,
     *,
     phase: str = "reading",
     after_first: Callable[[ProgramReading], None] | None = None,

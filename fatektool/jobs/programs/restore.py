@@ -20,13 +20,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fatektool.callbacks import ignore
 from fatektool.errors import LineError, PlcError, PlcNotReady, UsageError
 from fatektool.jobs.programs.backup import backup_of
 from fatektool.jobs.programs.fit import model_warning, require_kin, require_size
 from fatektool.jobs.programs.reading import read_program, read_program_twice
 from fatektool.jobs.programs.rewrite import Rewrite
 from fatektool.jobs.programs.safety import SafetyBackup
-from fatektool.jobs.progress import Progress, no_progress
 from fatektool.jobs.write_back.plan import WritePlan
 from fatektool.jobs.write_back.record import NO_MARK, Mark
 from fatektool.jobs.write_back.write import Agree, agreed, write_back
@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fatektool.client import Plc
+    from fatektool.jobs.progress import Progress
     from fatektool.program.archive import Backup
     from fatektool.program.image import Program
 
@@ -109,7 +110,7 @@ class RestoreResult:
 
 
 def plan_restore(
-    plc: Plc, backup: Backup, options: RestoreOptions, *, progress: Progress = no_progress
+    plc: Plc, backup: Backup, options: RestoreOptions, *, progress: Progress = ignore
 ) -> RestorePlan:
     """Check that a backup fits this PLC and find what differs. Changes nothing.
 
@@ -176,7 +177,7 @@ def carry_out(
     safety: SafetyBackup | None = None,
     agree: Agree = agreed,
     *,
-    progress: Progress = no_progress,
+    progress: Progress = ignore,
     mark: Mark = NO_MARK,
 ) -> RestoreResult:
     """Do what was planned: safety backup, question, STOP, write, read back, RUN.
@@ -249,7 +250,7 @@ def restore(
     confirm: Callable[[RestorePlan, Path | None], bool],
     options: RestoreOptions = RestoreOptions(),
     safety_folder: Path | None = None,
-    progress: Progress = no_progress,
+    progress: Progress = ignore,
 ) -> RestoreResult:
     """Restore a program: plan, safety backup, question, write, read back.
 

@@ -5,19 +5,20 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from fatektool.callbacks import ignore
 from fatektool.jobs.programs.reading import gives_page, read_all_pages
-from fatektool.jobs.progress import Progress, no_progress
 from fatektool.program.compare import Comparison, compare_images
 from fatektool.program.image import page_count
 
 if TYPE_CHECKING:
     from fatektool.client import Plc
+    from fatektool.jobs.progress import Progress
     from fatektool.program.image import Program
     from fatektool.project.comparison import ProgramComparison
     from fatektool.project.program_file import ProgramFile
 
 
-def verify(plc: Plc, program: Program, *, progress: Progress = no_progress) -> Comparison:
+def verify(plc: Plc, program: Program, *, progress: Progress = ignore) -> Comparison:
     """Compare a program (``a``) with the one in the PLC (``b``), page by page.
 
     As many pages are read as ``program`` has. What seems to differ is read again before it is said, so that
@@ -35,7 +36,7 @@ def verify(plc: Plc, program: Program, *, progress: Progress = no_progress) -> C
     return _verify(plc, program, progress)[0]
 
 
-def verify_file(plc: Plc, file: ProgramFile, *, progress: Progress = no_progress) -> ProgramComparison:
+def verify_file(plc: Plc, file: ProgramFile, *, progress: Progress = ignore) -> ProgramComparison:
     """Compare the program in a file (``a``), a backup or a project, with the one in the PLC (``b``).
 
     As ``verify``, and the networks that differ. Of a project the image is compared, in the PLC's order of
@@ -77,7 +78,7 @@ class VerifyResult:
     duration_s: float
 
 
-def compare_with_plc(plc: Plc, file: ProgramFile, *, progress: Progress = no_progress) -> VerifyResult:
+def compare_with_plc(plc: Plc, file: ProgramFile, *, progress: Progress = ignore) -> VerifyResult:
     """``verify_file``, with the time that it took; arguments and errors are the same."""
     clock = plc.link.transport.clock
     began = clock()

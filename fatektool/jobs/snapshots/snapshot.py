@@ -17,6 +17,7 @@ import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
+from fatektool.callbacks import ignore
 from fatektool.errors import DataError, UsageError
 from fatektool.files.atomic import STANDARD, file_error, is_pipe, read_bounded
 from fatektool.files.strict_json import read_json
@@ -28,7 +29,6 @@ from fatektool.jobs.status import brief_or_none
 from fatektool.protocol.commands import Command
 from fatektool.protocol.elements import Element
 from fatektool.protocol.values import NUMBERS, Value, ValueType, decode, raw_text
-from fatektool.transport.base import no_note
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -192,7 +192,7 @@ def value_of(raw: int, kind: ValueType, bits: int, scale: float | None, offset: 
     return number
 
 
-def parse_snapshot(data: bytes, name: str, note: Callable[[str], None] = no_note) -> Snapshot:
+def parse_snapshot(data: bytes, name: str, note: Callable[[str], None] = ignore) -> Snapshot:
     """Read a snapshot: a JSON document, or the last whole line of an NDJSON file.
 
     Args:
@@ -310,7 +310,7 @@ def _check(part: object, value: Value | None, where: str) -> None:
         )
 
 
-def load_snapshot(path: Path, note: Callable[[str], None] = no_note) -> Snapshot:
+def load_snapshot(path: Path, note: Callable[[str], None] = ignore) -> Snapshot:
     """Read a snapshot file, or the last whole line of an NDJSON one, however long that is.
 
     Args:

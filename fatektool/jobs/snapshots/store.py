@@ -16,10 +16,10 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from fatektool.callbacks import ignore
 from fatektool.errors import FatektoolError, FileWarning, UsageError
 from fatektool.files.atomic import file_error, require_folder, require_place, sync, write_new, write_whole
 from fatektool.files.times import stamp
-from fatektool.transport.base import no_note
 from fatektool.transport.lock import PortLock
 
 if TYPE_CHECKING:
@@ -133,7 +133,7 @@ def append_line(
     *,
     now: datetime | None = None,
     wait_s: float = 60.0,
-    waiting: Callable[[str], None] = no_note,
+    waiting: Callable[[str], None] = ignore,
 ) -> None:
     """Append one line, under a lock, in one write, on disk when this returns.
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
+from fatektool.callbacks import ignore
 from fatektool.errors import FatektoolError
 from fatektool.jobs.elements.planned import PlannedValues, RegisterChange
 from fatektool.jobs.elements.reads import turnaround
-from fatektool.jobs.progress import Progress, no_progress
 from fatektool.jobs.snapshots.formats import as_json
 from fatektool.jobs.snapshots.snapshot import Snapshot, load_snapshot, raw_of
 from fatektool.jobs.write_back.plan import WritePlan
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from fatektool.client import Plc
     from fatektool.jobs.elements.writes import NotTaken
+    from fatektool.jobs.progress import Progress
     from fatektool.protocol.status import BriefStatus
 
 
@@ -122,7 +123,7 @@ def write_values(
     *,
     rollback: bool = False,
     mark: Mark = NO_MARK,
-    progress: Progress = no_progress,
+    progress: Progress = ignore,
 ) -> Written:
     """Save the previous values, ask, write what differs, read it back: see ``write_back``.
 

@@ -20,13 +20,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fatektool.callbacks import ignore
 from fatektool.errors import FatektoolError, LineError, PlcError, RestoreIncomplete
-from fatektool.jobs.progress import Progress, no_progress
 from fatektool.jobs.write_back.record import NO_MARK, Mark
 from fatektool.jobs.write_back.safety_copy import kept
 
 if TYPE_CHECKING:
     from fatektool.client import Plc
+    from fatektool.jobs.progress import Progress
     from fatektool.jobs.write_back.plan import WritePlan
 
 Agree = Callable[[Path | None], object]
@@ -43,7 +44,7 @@ def write_back(
     agree: Agree = agreed,
     *,
     mark: Mark = NO_MARK,
-    progress: Progress = no_progress,
+    progress: Progress = ignore,
 ) -> Path | None:
     """Save what is there, ask, write, read back.
 

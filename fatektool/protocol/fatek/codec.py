@@ -89,10 +89,6 @@ class FatekCodec(ABC):
             require_commands(self, command)
         return self.request_frame(station, command, rows[command].request(self.data.notation, request))
 
-    def parse_request(self, frame: Frame) -> Request[object]:
-        """The request that a frame holds."""
-        return self.data.parse_request(frame.command, frame.data)
-
     def parse_answer(self, request: Request[A], frame: Frame) -> A:
         """What a frame answers to this request."""
         return self.data.parse_answer(request, frame.data)

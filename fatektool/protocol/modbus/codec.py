@@ -108,10 +108,6 @@ class ModbusCodec:
             raise UsageError(f"station: expected 0 to {self.stations[-1]}, got {station}")
         return self.framing.encode(station, modbus_data.request_pdu(request, self.map), number)
 
-    def parse_request(self, frame: Frame) -> Request[object]:
-        """The request that a frame holds."""
-        return modbus_data.parse_request(frame.data, self.map)
-
     def parse_answer(self, request: Request[A], frame: Frame) -> A:
         """What a frame answers to this request."""
         return modbus_data.parse_answer(request, frame.data, self.map)

@@ -18,13 +18,12 @@ from fatektool.protocol.commands import (
     Control,
     ControlDiscrete,
     ReadDiscretes,
-    ReadRegisters,
     Request,
     WriteDiscretes,
     WriteRegisters,
 )
 from fatektool.protocol.modbus import pdu as modbus_pdu
-from fatektool.protocol.modbus.map import Area, Reference
+from fatektool.protocol.modbus.map import Area
 from fatektool.protocol.modbus.pdu import Pdu
 from fatektool.protocol.modbus.sizes import answer_size, count_of, first_of, most, of_bits, units_of
 from fatektool.protocol.plc_errors import asked
@@ -110,40 +109,6 @@ def request_pdu(request: Request[Any], modbus_map: ModbusMap) -> bytes:
     if of_bits(first.symbol):
         return modbus_pdu.request_bytes(Pdu(function, place.offset, bits=tuple(map(bool, values))))
     return modbus_pdu.request_bytes(Pdu(function, place.offset, registers=values))
-
-
-def parse_request(pdu: bytes, modbus_map: ModbusMap) -> Request[Any]:
-    """The request that a PDU holds, of discretes and registers as such.
-
-    Raises:
-        FrameError: it holds none, or what it names is not all in the map, or not of one kind.
-    """
-    said = modbus_pdu.parse_request(pdu)
-    found = modbus_map.element_at(Reference(AREAS[said.function], said.offset))
-    if found is None or found.half == "high word":
-        raise FrameError(
-            f"offset {said.offset}: no element begins there in the {modbus_map.name} map", raw=pdu
-        )
-    first = found.element
-    wide = found.half is not None
-    written = said.function not in modbus_pdu.READS
-    count = len(said.bits) or len(said.registers) or said.count
-    if wide and (count != 2 and not (count - 2) % 4 == 0):
-        raise FrameError(f"offset {said.offset}: half a 32-bit counter", raw=pdu)
-    elements = (count + 2) // 4 if wide else count
-    try:
-        modbus_map.place(first, elements, writes=written)
-        if not written:
-            return (
-                ReadDiscretes(first, count)
-                if said.function in modbus_pdu.OF_BITS
-                else ReadRegisters(first, elements)
-            )
-        if said.function in modbus_pdu.OF_BITS:
-            return WriteDiscretes(first, tuple(said.bits))
-        return WriteRegisters(first, _joined(said.registers, 2) if wide else tuple(said.registers))
-    except UsageError as error:
-        raise FrameError(error.message, raw=pdu) from error
 
 
 def _written(request: Request[Any]) -> tuple[int, ...]:

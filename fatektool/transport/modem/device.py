@@ -21,8 +21,9 @@ from enum import Enum, auto
 from math import ceil
 from typing import TYPE_CHECKING, Final
 
+from fatektool.callbacks import ignore
 from fatektool.errors import LineError, TransportClosed, TransportError
-from fatektool.transport.base import Transport, no_note
+from fatektool.transport.base import Transport
 from fatektool.transport.modem.commands import ModemCommands, Result
 
 if TYPE_CHECKING:
@@ -78,7 +79,7 @@ class ModemTransport(Transport):
         note: is told the dialogue with the modem.
     """
 
-    def __init__(self, port: Transport, call: Call, note: Callable[[str], None] = no_note) -> None:
+    def __init__(self, port: Transport, call: Call, note: Callable[[str], None] = ignore) -> None:
         self.name = f"modem:{port.name} to {call.number}"
         self.clock = port.clock
         self._port = port

@@ -19,8 +19,9 @@ import os
 import sys
 from typing import TYPE_CHECKING, Any, Final
 
+from fatektool.callbacks import ignore
 from fatektool.errors import TransportClosed, TransportTimeout
-from fatektool.transport.base import DRAIN_LIMIT, MOST_SAID, WRITE_TIMEOUT_S, LineSettings, Transport, no_note
+from fatektool.transport.base import DRAIN_LIMIT, MOST_SAID, WRITE_TIMEOUT_S, LineSettings, Transport
 from fatektool.transport.said import said_text
 from fatektool.transport.serial_line.errors import gateway_closed, network_error, open_error
 from fatektool.transport.serial_line.settings import PORT_ERRORS, check_parity, of_pty, set_dtr, set_line
@@ -34,7 +35,7 @@ _SLICE_S: Final = 0.02
 
 
 def open_serial(
-    target: str, line: LineSettings, *, low_latency: bool = True, note: Callable[[str], None] = no_note
+    target: str, line: LineSettings, *, low_latency: bool = True, note: Callable[[str], None] = ignore
 ) -> Transport:
     """Open a serial port for this process alone.
 

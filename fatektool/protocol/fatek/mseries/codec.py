@@ -161,12 +161,6 @@ class MseriesCodec(FatekCodec):
         """A new decoder for one stream."""
         return MseriesDecoder()
 
-    def parse_request(self, frame: Frame) -> Request[object]:
-        """The request that a frame holds."""
-        if frame.raw[0] != QUERY:
-            raise FrameError("an answer (52), expected a request (51)", raw=frame.raw)
-        return super().parse_request(frame)
-
     def parse_answer(self, request: Request[A], frame: Frame) -> A:
         """What a frame answers to this request."""
         if frame.raw[0] != RESPONSE:

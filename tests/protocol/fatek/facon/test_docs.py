@@ -16,7 +16,7 @@ from fatektool.protocol.fatek.facon.text import TEXT
 from fatektool.protocol.plc_errors import MEANINGS
 from fatektool.protocol.registry import new_explainer
 from fatektool.protocol.status import MODELS, POINTS_FB, POINTS_FBS
-from tests.protocol.decoding import decoded, one_frame
+from tests.protocol.decoding import decoded, one_frame, request_of
 from tests.protocol.vectors import EXAMPLES, MISPRINTS, NAMES
 from tests.root import DOCS
 
@@ -94,7 +94,7 @@ def test_examples(heading: str, frames: list[Shown]) -> None:
         if command:
             assert explanation.command == int(command[0], 16)
     if [shown.kind for shown in frames] == ["request", "answer"] and "REFUSED" not in frames[1].words:
-        request = FACON.parse_request(one_frame(frames[0].raw))
+        request = request_of(one_frame(frames[0].raw))
         answer = FACON.parse_answer(request, one_frame(frames[1].raw))
         assert FACON.encode_answer(1, request, answer) == frames[1].raw
 

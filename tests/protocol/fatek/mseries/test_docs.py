@@ -14,7 +14,7 @@ from fatektool.protocol.fatek.mseries.codec import MAX_PAYLOAD, MSERIES
 from fatektool.protocol.fatek.mseries.crc import crc16
 from fatektool.protocol.plc_errors import MEANINGS
 from fatektool.protocol.registry import new_explainer
-from tests.protocol.decoding import one_frame
+from tests.protocol.decoding import one_frame, request_of
 from tests.protocol.fatek.facon.test_docs import Shown, blocks, table, words
 from tests.protocol.fatek.mseries.vectors import EXAMPLES, PAYLOADS
 from tests.root import DOCS
@@ -39,7 +39,7 @@ def test_examples(heading: str, frames: list[Shown]) -> None:
         if command:
             assert explanation.command == int(command[0], 16)
     if [shown.kind for shown in frames] == ["request", "answer"] and "REFUSED" not in frames[1].words:
-        request = MSERIES.parse_request(one_frame(frames[0].raw, MSERIES))
+        request = request_of(one_frame(frames[0].raw, MSERIES), MSERIES)
         answer = MSERIES.parse_answer(request, one_frame(frames[1].raw, MSERIES))
         assert MSERIES.encode(1, request) == frames[0].raw
         assert MSERIES.encode_answer(1, request, answer) == frames[1].raw
