@@ -13,11 +13,9 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypedDict, cast
 
 from fatektool.checks import Check, OneOf, Seconds, Text, WholeNumber, YesNo
 from fatektool.errors import UsageError
-from fatektool.protocol.codec import require_station
 from fatektool.protocol.registry import CODECS
 from fatektool.protocols import DEFAULT, PROTOCOLS
 from fatektool.transport.base import BAUD, FORMAT, LineSettings
-from fatektool.transport.target import Target
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -25,6 +23,7 @@ if TYPE_CHECKING:
 
     from fatektool.protocol.codec import Codec
     from fatektool.protocol.modbus.map import ModbusMap
+    from fatektool.transport.target import Target
 
 DEFAULT_FORMATS: Final = "7E1; 8E1 for mseries and modbus-rtu"
 
@@ -111,6 +110,8 @@ class PlcAddress:
             UsageError: no PLC can be asked at this address. The message begins with the field that is wrong,
                 or with the target.
         """
+        from fatektool.protocol.codec import require_station  # not for who asks for help alone
+
         require_station(self.codec, self.station)
         where, data_bits = self.where, self.codec.data_bits
         if not where.on_serial_port:
@@ -144,6 +145,8 @@ class PlcAddress:
         Raises:
             UsageError: it is none, or lacks a port.
         """
+        from fatektool.transport.target import Target
+
         return Target.parse(self.target, default_port=self.codec.default_tcp_port)
 
 

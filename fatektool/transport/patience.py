@@ -12,8 +12,7 @@ The number of tries is that of the exchange, ``--retries``; the pauses are in pr
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, TypeVar
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeVar
 
 from fatektool.callbacks import ignore
 from fatektool.errors import TransportClosed
@@ -29,8 +28,7 @@ T = TypeVar("T")
 _LONGEST_PAUSE_S: Final = 5.0
 
 
-@dataclass(frozen=True, slots=True)
-class Patience:
+class Patience(NamedTuple):
     """How often a connection is tried, and how long between.
 
     Attributes:

@@ -13,9 +13,8 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from fatektool.errors import UsageError
 
@@ -39,8 +38,7 @@ class TargetKind(Enum):
     MODEM = "modem"
 
 
-@dataclass(frozen=True, slots=True)
-class Target:
+class Target(NamedTuple):
     """One target, taken apart.
 
     Attributes:

@@ -277,7 +277,7 @@ def test_a_broadcast_is_sent_to_station_0_and_not_proven(
     words = [*line.split(), "-p", two, "-s", "0", "--trace", "t.ndjson", *(["--json"] if as_json else [])]
     done = cli(*words)
     assert done.code == 2
-    assert "0 is every PLC on the line, and none answers: add --broadcast" in one_line(done.err)
+    assert "0 is broadcast, to which no PLC replies: add --broadcast" in one_line(done.err)
     assert not Path("t.ndjson").exists()
     done = cli(*words, "--broadcast")
     assert (done.code, done.err) == (0, "")

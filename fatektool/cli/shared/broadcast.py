@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
@@ -60,7 +59,7 @@ def send_to_all(
         LineError: the line is not there or failed; some of them may be sent.
     """
     any_station = connection.address.changed(station=1)  # a line is opened with one; which does not matter
-    with replace(connection, address=any_station).open(voice, writes=True) as plc:
+    with connection._replace(address=any_station).open(voice, writes=True) as plc:
         question = f"'{command}' goes to every PLC on {connection.address.target}, and none answers. Send?"
         if not voice.confirm(question, yes=yes):
             raise UsageError("not agreed to: nothing was sent")

@@ -18,7 +18,6 @@ from fatektool.cli.shared.connection import Connection
 from fatektool.cli.shared.inventory_file import complete_target, inventory_option, plc_named
 from fatektool.cli.shared.options import PATH, type_of, voice_options
 from fatektool.errors import UsageError
-from fatektool.protocol.codec import require_station
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -210,4 +209,6 @@ def _require_station(address: PlcAddress, *, broadcast: bool | None) -> None:
             hint="0 is broadcast, to which no PLC replies: add --broadcast if every PLC on the line is meant",
         )
     if not (address.station == 0 and broadcast):
+        from fatektool.protocol.codec import require_station
+
         require_station(address.codec, address.station)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import wraps
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
@@ -35,7 +34,7 @@ def modbus_map_option(function: F) -> F:
         if modbus_map is not None:
             chosen: ModbusMap | Literal["custom"]
             chosen = "custom" if modbus_map == "custom" else read_map(modbus_map)
-            connection = replace(connection, address=connection.address.changed(modbus_map=chosen))
+            connection = connection._replace(address=connection.address.changed(modbus_map=chosen))
         return function(*args, connection=connection, **rest)
 
     return with_map  # type: ignore[return-value]  # click's decorators hand back what they get
