@@ -146,7 +146,7 @@ ERRORS = r"""
 2 run -p PLC --yes --read-only
     'fatektool run' writes: this line is read-only, and nothing was sent
 2 decode hello
-    'hello' is neither hex digits in pairs nor a trace
+    'hello' is neither hex digits in pairs nor an existing
 2 decode LONG
     neither hex
 2 loopback -p PLC --sizes 257
@@ -170,7 +170,7 @@ ERRORS = r"""
 2 scan -p PLC --stations 9-3
     expected the lower station first
 2 scan -p PLC --bauds 9600,19200
-    no speed and format to try
+    has no baud rate and format: expected a serial port
 2 scan -p PLC --bauds 10
     expected a whole number from 50 to 4000000, got 10
 2 scan -p PLC --protocols nope

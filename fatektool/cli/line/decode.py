@@ -37,9 +37,9 @@ _ROLES = {"request": Role.REQUEST, "answer": Role.ANSWER}
 @click.option(
     "--protocol",
     type=OneOf(PROTOCOLS),
-    help="Of the frames.  [default: what the trace tells, or facon]",
+    help="Protocol of the frames.  [default: that of the trace, else facon]",
 )
-@click.option("--as", "role", type=click.Choice(list(_ROLES)), help="What the frames given as hex are.")
+@click.option("--as", "role", type=click.Choice(list(_ROLES)), help="What frames given as hex are.")
 @voice_options
 def decode_command(
     frames: tuple[str, ...],
@@ -48,10 +48,10 @@ def decode_command(
     protocol: str | None,
     role: str | None,
 ) -> int:
-    """Explain frames: every field, and whether the checksum is right.
+    """Explain frames: each field, and whether the checksum is correct.
 
-    They are given as HEX, or come from a trace FILE (.ndjson, .pcap). Exit 5 if one is damaged, such as by a
-    wrong checksum, or is none; all are shown nevertheless.
+    Frames are given as HEX or read from a trace FILE (.ndjson, .pcap). All are shown; exit 5 if one is
+    damaged, such as by a wrong checksum, or if there is none.
     """
     records, damage = _gathered(frames)
     together("role", holds=all(not record.time for record in records), needs="frames given as hex")
@@ -65,7 +65,7 @@ def decode_command(
     if not any(explanation.command is not None for _, explanation in found):
         others = " or ".join(name for name in PROTOCOLS if name != protocol)
         raise DataError(
-            f"no {protocol} frame in it: expected {explainer.form}", hint=f"or is it --protocol {others}?"
+            f"no {protocol} frame found: expected {explainer.form}", hint=f"try --protocol {others}"
         )
     document = decode_document(protocol, found)
     voice.show(document, _lines(found, binary=explainer.binary))
@@ -76,7 +76,7 @@ def decode_command(
 
 
 def _protocol_of(records: Iterable[TraceRecord]) -> str:
-    """The protocol that a trace tells of; FACON if it tells none that is known."""
+    """The protocol that a trace names; FACON if it names none that is known."""
     return next((record.protocol for record in records if record.protocol in PROTOCOLS), DEFAULT)
 
 
@@ -111,7 +111,7 @@ def _records(frames: tuple[str, ...]) -> Iterator[TraceRecord]:
     if len(frames) == 1 and os.path.exists(frames[0]):  # noqa: PTH110  # Path's raises if the name is long
         yield from read_trace(read_bounded(Path(frames[0]), _MAX_TRACE), frames[0])
         return
-    raise UsageError(f"{text[:60]!r} is neither hex digits in pairs nor a trace file that is there")
+    raise UsageError(f"{text[:60]!r} is neither hex digits in pairs nor an existing trace file")
 
 
 def _direction(record: TraceRecord) -> Role:

@@ -1,4 +1,4 @@
-"""``doctor``: a short examination of a PLC and its line."""
+"""``doctor``: a diagnosis of a PLC and its line."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 @click.command("doctor", epilog="Example: fatektool doctor -p /dev/ttyUSB0")
 @connection_options
 def doctor_command(connection: Connection, voice: Voice) -> int:
-    """Examine a PLC and its line: what is wrong, what says so, and what to do.
+    """Diagnose a PLC and its line: each fault with its evidence and what to do.
 
-    Takes ten seconds or so; writes nothing. Where a serial line is silent, all speeds that these PLCs have
-    are tried in the usual formats, which takes a minute at most. Exit 1 if there is a fault.
+    Takes about ten seconds and writes nothing. If a serial line is silent, all baud rates of these PLCs are
+    tried in the usual formats, for one minute at most. Exit 1 if there is a fault.
     """
     with connection.open(voice, needs=(Command.LOOPBACK,)) as plc, voice.progress("steps") as bar:
         found = examine(plc, bar.update)
@@ -40,7 +40,7 @@ def _lines(document: dict[str, Any]) -> Iterator[str]:
     yield f"station {document['station']} on {document['target']}{line}, {document['protocol']}"
     times = test["latency_ms"]
     took = "" if times["p50"] is None else f", half of them within {times['p50']:.1f} ms"
-    yield f"loopback test: {test['ok']} of {test['sent']} came back{took}"
+    yield f"loopback test: {test['ok']} of {test['sent']} answered{took}"
     if document["status"] is not None:
         yield f"the PLC is in {'RUN' if document['status']['running'] else 'STOP'}"
     if document["searched"] is not None:
@@ -48,11 +48,11 @@ def _lines(document: dict[str, Any]) -> Iterator[str]:
     yield ""
     yield from findings(document["findings"])
     if document["healthy"]:
-        yield "nothing is wrong"
+        yield "no faults found"
 
 
 def _searched(searched: dict[str, Any], *, found: bool) -> Iterator[str]:
-    """What was tried elsewhere; with who was found the search ended."""
+    """What the search tried; it ended with the first station found."""
     formats: dict[str, list[int]] = {}
     for line in searched["tried"]:
         baud, form = line.split()
@@ -60,6 +60,6 @@ def _searched(searched: dict[str, Any], *, found: bool) -> Iterator[str]:
     for form, bauds in formats.items():
         yield f"tried {form}  {', '.join(map(str, sorted(bauds)))} baud"
     if searched["refused"]:
-        yield f"this port does not take {', '.join(searched['refused'])}"
-    ended = "the time was over" if searched["out_of_time"] else "found" if found else "nobody answered"
+        yield f"this port does not support {', '.join(searched['refused'])}"
+    ended = "time limit reached" if searched["out_of_time"] else "found" if found else "no answer"
     yield f"searched {searched['duration_s']:.0f} s: {ended}"

@@ -39,11 +39,11 @@ _TCP = "modbus-tcp"
     type=click.Choice(list(_ROLES)),
     default="request",
     show_default=True,
-    help="An answer is written as the request, with the values that it gives.",
+    help="Write an answer as its request, with the values that it returns.",
 )
 @click.option("--error", metavar="CODE", help="The answer that refuses COMMAND with this error code, in hex.")
-@click.option("--data", metavar="HEX", help="The data field as it is, for any COMMAND; - for none.")
-@click.option("--number", type=click.IntRange(0, 0xFFFF), help=f"Of a {_TCP} frame.  [default: 0]")
+@click.option("--data", metavar="HEX", help="The data field in hex, for any COMMAND; - for an empty one.")
+@click.option("--number", type=click.IntRange(0, 0xFFFF), help=f"Number of a {_TCP} frame.  [default: 0]")
 @voice_options
 def encode_command(
     command: str,

@@ -1,4 +1,4 @@
-"""``loopback``: a stress test of the line."""
+"""``loopback``: a test of the line."""
 
 from __future__ import annotations
 
@@ -33,12 +33,17 @@ if TYPE_CHECKING:
     "loopback",
     epilog="Example: fatektool loopback --duration 3600 --max-error-rate 0.001 --json -p /dev/ttyUSB0",
 )
-@click.option("--count", type=click.IntRange(1), help=f"So many exchanges.  [default: {DEFAULT_COUNT}]")
-@click.option("--duration", type=Seconds(0, inf, above=True), metavar="S", help="So many seconds instead.")
+@click.option("--count", type=click.IntRange(1), help=f"Number of exchanges.  [default: {DEFAULT_COUNT}]")
+@click.option(
+    "--duration",
+    type=Seconds(0, inf, above=True),
+    metavar="S",
+    help="Seconds, instead of a number of exchanges.",
+)
 @click.option(
     "--sizes",
     type=Several(click.IntRange(0, MAX_FRAME)),
-    help=f"Characters, 0 to 256, with --raw up to {MAX_FRAME} with the codes; swept.  "
+    help=f"Numbers of characters, used in turn: 0 to 256; with --raw up to {MAX_FRAME} with the codes.  "
     f"[default: {','.join(map(str, DEFAULT_SIZES))}]",
 )
 @click.option(
@@ -47,14 +52,14 @@ if TYPE_CHECKING:
     type=Several(click.Choice([pattern.value for pattern in Pattern])),
     default=",".join(pattern.value for pattern in Pattern),
     show_default=True,
-    help="What they are, swept too.",
+    help="Patterns of the characters, used in turn.",
 )
 @click.option(
     "--interval",
     type=Seconds(0, 86400),
     default=0.0,
     metavar="S",
-    help="From request to request; 0: at once.",
+    help="Time from request to request; 0 for no pause.",
 )
 @click.option(
     "--max-error-rate",
@@ -62,17 +67,20 @@ if TYPE_CHECKING:
     default=0.0,
     show_default=True,
     metavar="P",
-    help="More than this, 0 to 1, fails.",
+    help="Highest error rate allowed, 0 to 1.",
 )
 @click.option(
-    "--max-p99", type=click.FloatRange(0, min_open=True), metavar="MS", help="More than this fails."
+    "--max-p99",
+    type=click.FloatRange(0, min_open=True),
+    metavar="MS",
+    help="Highest 99th percentile of the latency allowed.",
 )
 @click.option(
     "--raw",
     metavar="START,END",
-    help="No 4E, but texts in the frame of a ladder program that sends them back: bytes in hex, or none.",
+    help="Instead of 4E: texts between these codes, which a ladder program returns. Bytes in hex, or none.",
 )
-@click.option("--seed", type=int, default=0, show_default=True, help="Of the random pattern.")
+@click.option("--seed", type=int, default=0, show_default=True, help="Seed of the random pattern.")
 @report_option
 @connection_options
 def loopback_command(
@@ -90,15 +98,16 @@ def loopback_command(
     seed: int,
     report: Path | None,
 ) -> int:
-    """Send characters that the PLC must send back (4E), and count what becomes of them.
+    """Test the line: send characters that the PLC must return (4E), and count the errors.
 
-    Nothing is retried: each exchange counts. Exit 1 if a limit is passed. Ctrl-C shows the figures so far.
+    Nothing is retried: each exchange without the right answer is an error. Exit 1 if a limit is exceeded.
+    Ctrl-C ends the test and shows the figures so far.
 
-    With --raw 02,03 each text goes out between these codes, and is expected back in them: from a ladder
-    program that sends back what it gets (CLINK, MD2). Then no station and no protocol count.
+    With --raw 02,03 each text is sent between these codes and expected back between them, from a ladder
+    program that returns what it receives (CLINK, MD2). Station and protocol have no effect then.
     """
     frame = None if raw is None else RawFrame.parse(raw)
-    apart("raw", "station", "protocol", why="texts in a frame of their own have neither")
+    apart("raw", "station", "protocol", why="frames of --raw have neither")
     together("seed", holds=Pattern.RANDOM.value in patterns, needs="--pattern random")
     plan = LoopbackPlan(
         count=DEFAULT_COUNT if count is None and duration is None else count,

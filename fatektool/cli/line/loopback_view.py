@@ -1,4 +1,4 @@
-"""What ``loopback`` shows: counters while it runs, then figures, a histogram and the diagnosis."""
+"""The output of ``loopback``: counters while it runs, then figures, a histogram and the diagnosis."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class LiveFigures:
 
 
 def lines(document: dict[str, Any]) -> Iterator[str]:
-    """The document of a test in words."""
+    """The document of a test as lines."""
     yield from table(_figures(document))
     yield ""
     yield from _sizes(document["by_size"])
@@ -91,7 +91,7 @@ def _figures(document: dict[str, Any]) -> Iterator[tuple[str, object]]:
     yield "exchanges", f"{document['sent']} sent, {document['ok']} ok in {document['duration_s']:.1f} s"
     yield "errors", errors or "none"
     rate, most = document["error_rate"], document["error_rate_upper95"]
-    yield "error rate", f"{rate:.3g}, at most {most:.3g} (95 % sure)"
+    yield "error rate", f"{rate:.3g}, at most {most:.3g} (95 % confidence)"
     for name, key in (("latency", "latency_ms"), ("turnaround", "turnaround_ms")):
         times = document[key]
         if times["p50"] is not None:
@@ -101,7 +101,7 @@ def _figures(document: dict[str, Any]) -> Iterator[tuple[str, object]]:
         yield "line use", f"{document['line_use']:.1%}"
     yield "bytes", f"{document['bytes_sent']} sent, {document['bytes_received']} received"
     if document["ended"] not in {"count", "duration"}:
-        yield "ended", f"{document['ended']}: these are the figures so far"
+        yield "ended", f"{document['ended']}: figures so far"
 
 
 def _sizes(by_size: Iterable[dict[str, Any]]) -> Iterator[str]:
@@ -129,7 +129,7 @@ def _histogram(bars: list[dict[str, Any]]) -> Iterator[str]:
 
 
 def findings(found: Iterable[dict[str, Any]]) -> Iterator[str]:
-    """A diagnosis in words, the faults first."""
+    """A diagnosis as lines, the faults first."""
     for finding in sorted(found, key=lambda finding: not finding["fault"]):
         yield f"{'FAULT' if finding['fault'] else 'note'}: {finding['finding']}"
         yield f"  seen: {finding['evidence']}"

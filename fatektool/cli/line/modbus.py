@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @click.group("modbus", epilog="Example: fatektool modbus map R100 406012")
 def modbus_command() -> None:
-    """What Modbus calls the elements of a PLC."""
+    """Elements of a PLC and their Modbus references."""
 
 
 @modbus_command.command("map", epilog="Example: fatektool modbus map R100 X16 DRC200 406012 00001")
@@ -27,7 +27,7 @@ def modbus_command() -> None:
 @map_alone_option
 @voice_options
 def map_command(names: tuple[str, ...], voice: Voice, *, modbus_map: ModbusMap) -> None:
-    """Show which reference an element has, and which element stands behind a reference.
+    """Show the Modbus reference of an element, or the element of a reference.
 
     References have five digits or six: 46012 is 406012. Without a name the whole map is shown.
     """

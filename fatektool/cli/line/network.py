@@ -25,10 +25,10 @@ _IN_A_LINE = 16
 
 
 def look_for_modules(voice: Voice, network: str, timeout_s: float) -> int:
-    """Ask at the address that is named, and at no other; show who answers.
+    """Send a request to the address that is named, and to no other; show the answers.
 
     Args:
-        voice: tells it.
+        voice: prints.
         network: HOST[:PORT].
         timeout_s: of ``--timeout``.
 
@@ -40,7 +40,7 @@ def look_for_modules(voice: Voice, network: str, timeout_s: float) -> int:
         "network",
         *("port", "stations", "bauds", "formats", "protocols", "station", "baud", "line_format", "protocol"),
         *("retries", "lock_wait", "low_latency", "trace", "inventory"),
-        why="modules are looked for with one call on UDP; --timeout says how long to listen",
+        why="modules are found with one UDP request; --timeout is the time to wait for answers",
     )
     host, port = _host_and_port(network)
     listen_s = timeout_s if given("timeout") else LISTENED_S
@@ -53,7 +53,7 @@ def look_for_modules(voice: Voice, network: str, timeout_s: float) -> int:
         voice.show(network_document(time, f"{host}:{port}", listen_s, found), ())
     count = len({answer.address for answer in found})
     told = f"{count or 'no'} module{'' if count == 1 else 's'} answered at {host}, UDP port {port}"
-    advice = "; on another network, or a firewall in between?" if not count else ""
+    advice = "; check the address, the network and the firewall" if not count else ""
     voice.say(f"{told}, within {listen_s:g} s{advice}")
     return 0 if found else 1
 
@@ -73,7 +73,7 @@ def _show(voice: Voice, answer: Answer) -> None:
 
 def _lines(answer: Answer) -> Iterator[str]:
     short = "" if len(answer.data) >= discovery.SHORTEST_ANSWER else ", shorter than that of a module"
-    yield f"{answer.address}  {len(answer.data)} bytes{short}; what they mean is not known:"
+    yield f"{answer.address}  {len(answer.data)} bytes{short}; their meaning is not documented:"
     for at in range(0, len(answer.data), _IN_A_LINE):
         part = answer.data[at : at + _IN_A_LINE]
         yield f"  {at:04X}  {part.hex(' ').upper():<47}  {printable(part)}"
@@ -82,6 +82,6 @@ def _lines(answer: Answer) -> Iterator[str]:
 network_option = click.option(
     "--network",
     metavar="HOST[:PORT]",
-    help="Instead: which Ethernet modules answer on UDP at this address, one of a network too "
-    "(192.168.2.255). Sent there alone.",
+    help="Instead: find Ethernet modules by UDP, at this address or broadcast address (192.168.2.255). "
+    "Nothing is sent to other addresses.",
 )

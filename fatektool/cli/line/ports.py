@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 @click.command("ports", epilog="Example: fatektool ports")
 @voice_options
 def ports_command(voice: Voice) -> None:
-    """List the serial ports of this computer, with what the adapters tell of themselves."""
+    """List the serial ports of this computer, with the names of their adapters."""
     found = serial_ports()
     voice.show(ports_document(found), _lines(found))
     if not found:
@@ -37,6 +37,6 @@ def _lines(ports: list[SerialPort]) -> Iterator[str]:
 def _nothing() -> str:
     if sys.platform == "linux":
         return (
-            "no serial port found; after plugging an adapter in, 'dmesg | tail' shows whether Linux knows it"
+            "no serial ports found; plug the adapter in, then 'dmesg | tail' shows whether Linux detects it"
         )
-    return "no serial port found; is the adapter's driver installed?"
+    return "no serial ports found; check that the driver of the adapter is installed"

@@ -1,4 +1,4 @@
-"""``scan``: who is on the line."""
+"""``scan``: which stations are on the line."""
 
 from __future__ import annotations
 
@@ -77,13 +77,13 @@ class Bauds(Several):
     type=Stations(),
     default="1-254",
     show_default=True,
-    help="Which; the first is tried everywhere first.",
+    help="Stations to try; the first one with all settings, before the others.",
 )
 @click.option(
     "--bauds",
     type=Bauds(type_of(BAUD)),
     metavar="N,…",
-    help="Speeds to try; 'all' for those that FATEK has.  [default: that of --baud]",
+    help="Baud rates to try; 'all' for all that FATEK PLCs have.  [default: that of --baud]",
 )
 @click.option(
     "--formats",
@@ -109,14 +109,14 @@ def scan_command(
     protocols: tuple[str, ...] | None,
     network: str | None,
 ) -> int:
-    """Find which stations answer, and at which speed, format and protocol.
+    """Find the stations that answer, with baud rate, format and protocol.
 
-    Each is asked for its brief status (40), over Modbus for R0, which changes nothing.
+    Each station is asked for its brief status (40), over Modbus for R0. Nothing is changed.
 
-    A silent station costs the wire time and
-    --timeout: a shorter one makes a scan faster, and deaf to slow PLCs. Exit 1 if nobody answers.
+    Each silent station takes --timeout: a shorter one makes a scan faster, but slow PLCs may be missed.
+    Exit 1 if no station answers.
     """
-    apart("network", "port", "stations", "station", why="Ethernet modules are asked, and no line")
+    apart("network", "port", "stations", "station", why="it asks Ethernet modules, not stations on a line")
     apart("network", "bauds", "baud", "formats", "line_format", "protocols", "protocol")
     apart("network", "trace", "retries", "lock_wait")
     if network is not None:
@@ -139,8 +139,8 @@ def scan_command(
             raise UsageError(f"{networks[0]} is for networks: {connection.address.target} is a serial line")
         if not serial and len({setting.line.baud for setting in settings}) > 1:
             raise UsageError(
-                f"{connection.address.target} has no speed and format to try: expected a serial port",
-                hint="set them at the gateway",
+                f"{connection.address.target} has no baud rate and format: expected a serial port",
+                hint="set them in the gateway",
             )
         time = utc()
         bar = stack.enter_context(voice.progress("probes"))
@@ -167,10 +167,10 @@ def _settings(
     formats: tuple[str, ...] | None,
     protocols: tuple[str, ...] | None,
 ) -> list[ScanSetting]:
-    """All that can be: protocol by protocol, the factory setting first.
+    """All settings to try: protocol by protocol, the factory setting first.
 
     Raises:
-        UsageError: a protocol for which no format has bits enough.
+        UsageError: no format has enough data bits for a protocol.
     """
     found: dict[ScanSetting, None] = {}
     for name in protocols or (address.protocol,):
@@ -206,25 +206,26 @@ def _summary(result: ScanResult) -> str:
 def _parts(result: ScanResult) -> Iterator[str]:
     count = len(result.found)
     stations = f"{count or 'no'} station{'' if count == 1 else 's'}"
-    yield f"{stations} found by {result.probes} probes in {result.duration_s:.1f} s"
+    requests = f"{result.probes} request{'' if result.probes == 1 else 's'}"
+    yield f"{stations} found with {requests} in {result.duration_s:.1f} s"
     if result.unclear:
         places = sorted({place.station for place in result.unclear})
         named = ", ".join(map(str, places[:5])) + (", …" if len(places) > 5 else "")
-        yield f"something that is no frame was heard from station {named}: another speed, format or protocol?"
+        yield f"no valid frame in the bytes from station {named}: another baud rate, format or protocol?"
     elif not count:
-        yield f"is the PLC on, the cable in? try --bauds all --formats {','.join(FORMATS)}"
+        yield f"check that the PLC is on, and the cable; try --bauds all --formats {','.join(FORMATS)}"
     if result.refused:
         lines = dict.fromkeys(str(setting.line) for setting in result.refused)
-        yield f"this port does not take {', '.join(lines)}"
+        yield f"this port does not support {', '.join(lines)}"
     for found in result.found:
         if found.any_number:
             yield (
-                f"what answers as station {found.station} answers every number: it is one PLC, whose port "
-                "does not check the station (low byte of R4149 for port 0, R4155 for ports 1 and 2, R4156 "
-                "for 3 and 4 is 1; for a line of several PLCs write 0 there)"
+                f"station {found.station} answers for every station number: it is one PLC, whose port does "
+                "not check the number (the low byte of R4149 for port 0, R4155 for ports 1 and 2, R4156 "
+                "for ports 3 and 4 is 1; write 0 there before you connect several PLCs)"
             )
     late_s = [found.latency_s for found in result.found if found.late and found.latency_s is not None]
     if late_s:
-        yield f"answers came late, after {max(late_s):.2g} s: give --timeout {longer_timeout(max(late_s)):g}"
+        yield f"answers were late, after {max(late_s):.2g} s: give --timeout {longer_timeout(max(late_s)):g}"
     if result.interrupted:
         yield "interrupted"

@@ -1,8 +1,7 @@
-"""What a loopback test says about the line, in words: each rule names its evidence and what to do.
+"""The diagnosis of a loopback test: each rule gives a finding with its evidence and what to do, or nothing.
 
-A rule looks at the figures of a test and gives a finding or nothing. The first that speaks of the line as a
-whole (nothing heard, nothing but noise, nothing but the own echo) stands alone: figures of a line that does
-not work say nothing else.
+The rules for a line that does not work at all (nothing received, only noise, only the echo) come first. The
+first of these that applies is the only finding: the other figures of such a line mean nothing.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ SLOW_PLC: Final = "slow-plc"
 
 
 def diagnose(case: Case) -> list[Finding]:
-    """Run the rules; an empty list is a line with nothing to say about."""
+    """Run the rules; the list is empty if there is nothing to report."""
     whole, rules = (_WHOLE_LINE, _RULES) if case.result.plan.raw is None else (_RAW_WHOLE_LINE, _RAW_RULES)
     for rule in whole:
         finding = rule(case)
@@ -41,12 +40,12 @@ def _silence(case: Case) -> Finding | None:
     return Finding(
         "silence",
         fault=True,
-        finding="nothing comes back, not a byte",
-        evidence=f"{result.total.sent} requests, 0 bytes heard",
-        advice=f"is the PLC on, the address right, the station right? {AT_AN_ETHERNET_MODULE}"
+        finding="no bytes received",
+        evidence=f"{result.total.sent} requests, 0 bytes received",
+        advice=f"check that the PLC is on, its address and its station; {AT_AN_ETHERNET_MODULE}"
         if case.network
-        else "is the PLC on, the cable in, A and B the right way round, the port the right one? If so, "
-        "another station, speed or format: 'fatektool scan' finds it",
+        else "check that the PLC is on, the cable, wires A and B, and the port; if these are right, the "
+        "station, baud rate or format is wrong: run 'fatektool scan'",
     )
 
 
@@ -57,9 +56,9 @@ def _only_echo(case: Case) -> Finding | None:
     return Finding(
         "echo-only",
         fault=True,
-        finding="only its own requests come back: the line echoes, and no PLC answers",
-        evidence=f"{result.total.sent} requests, {result.bytes_received} bytes heard, all of them requests",
-        advice="the converter works; is the PLC on, the station right, are A and B the right way round?",
+        finding="only the echo of the requests is received: no PLC answers",
+        evidence=f"{result.total.sent} requests, {result.bytes_received} bytes received, all of them echo",
+        advice="the converter works; check that the PLC is on, the station, and wires A and B",
     )
 
 
@@ -71,7 +70,7 @@ def _wrong_format(case: Case) -> Finding | None:
         "wrong-format",
         fault=True,
         finding=f"the PLC sends 7 bits and parity; this line is set to {case.line.format}",
-        evidence=f"frames appear when the eighth bit is left out: {sample(result)}",
+        evidence=f"the bytes are frames if bit 8 is ignored: {sample(result)}",
         advice="try --format 7E1 (the factory setting), or 7O1",
     )
 
@@ -83,8 +82,8 @@ def _wrong_line(case: Case) -> Finding | None:
     return Finding(
         "wrong-line",
         fault=True,
-        finding="something answers, but not one frame can be read: speed, format or protocol is another",
-        evidence=f"{result.total.sent} requests, {result.bytes_received} bytes heard, no frame: "
+        finding="bytes are received, but no valid frame: wrong baud rate, format or protocol",
+        evidence=f"{result.total.sent} requests, {result.bytes_received} bytes received, no valid frame: "
         f"{sample(result)}",
         advice=f"this line is set to {case.line} {case.codec.name}; "
         "'fatektool scan --bauds … --formats …' tries others",
@@ -115,9 +114,9 @@ def _foreign(case: Case) -> Finding | None:
     return Finding(
         "foreign-station",
         fault=True,
-        finding=f"other stations answer what station {case.station} is asked",
-        evidence=f"{sum(foreign.values())} answers of station {stations}",
-        advice="another master may ask on this line at the same time, or a gateway mixes answers up",
+        finding=f"other stations answer requests to station {case.station}",
+        evidence=f"{sum(foreign.values())} answers from station {stations}",
+        advice="look for a second master on this line, or a gateway that confuses answers",
     )
 
 
@@ -128,8 +127,8 @@ def _twins(case: Case) -> Finding | None:
     return Finding(
         "two-on-one-station",
         fault=True,
-        finding=f"answers come twice: two PLCs have station {case.station}, or a gateway repeats",
-        evidence=f"{heard.twice} answers came a second time, "
+        finding=f"answers are received twice: two PLCs have station {case.station}, or a gateway repeats",
+        evidence=f"{heard.twice} answers were received twice, "
         f"{total.errors['checksum'] + total.errors['garbled']} were damaged",
         advice="switch off one PLC after the other and run this again; then give one of them another station",
     )
@@ -141,9 +140,9 @@ def _echo(case: Case) -> Finding | None:
     return Finding(
         "echo",
         fault=False,
-        finding="the line gives back each request: a two-wire converter that does not mute itself",
-        evidence=f"{case.result.bytes_received} bytes heard for {case.result.bytes_sent} sent",
-        advice="fatektool copes; other programs may not: switch the converter's echo off if it can be",
+        finding="the line echoes each request: a two-wire converter that receives while it sends",
+        evidence=f"{case.result.bytes_received} bytes received for {case.result.bytes_sent} sent",
+        advice="fatektool ignores the echo, other programs may not: disable it in the converter if possible",
     )
 
 
@@ -156,10 +155,10 @@ def _errors_by_size(case: Case) -> Finding | None:
     return Finding(
         "errors-grow-with-size",
         fault=True,
-        finding="the longer a frame, the more errors: single bits are hit, as by noise or a bad termination",
-        evidence=f"errors by size {shares}",
-        advice="check termination at both ends, shield and its earth, cables beside drives; "
-        "a lower baud helps",
+        finding="longer frames have more errors: single bits are damaged, as by noise or a wrong termination",
+        evidence=f"error rate by size {shares}",
+        advice="check the termination at both ends, the shield and its earth, and cables next to drives; "
+        "use a lower baud rate",
     )
 
 
@@ -171,10 +170,10 @@ def _damage(case: Case) -> Finding | None:
     return Finding(
         "damaged-frames",
         fault=True,
-        finding="answers come damaged, and not clearly the longer ones more often",
-        evidence=f"{count} of {total.sent}, {case.result.heard.noise_bytes} bytes that were no frame",
-        advice="a loose contact, two masters on the line, or a converter that switches its direction "
-        "too early",
+        finding="answers are damaged, short ones as well as long ones",
+        evidence=f"{count} of {total.sent}, {case.result.heard.noise_bytes} bytes that are no valid frame",
+        advice="look for a loose contact, a second master on the line, or a converter that changes its "
+        "direction too early",
     )
 
 
@@ -184,16 +183,22 @@ def _slow(case: Case) -> Finding | None:
     late = result.heard.late
     if result.heard.steps.seen or (not late and (p50_ms is None or p50_ms < _SLOW_S * 1000)):
         return None
-    heard = f"half of the answers take {p50_ms:.4g} ms or more beside wire time" if p50_ms is not None else ""
+    heard = (
+        f"half of the answers take {p50_ms:.4g} ms or more, wire time not included"
+        if p50_ms is not None
+        else ""
+    )
     if late:
-        latest = f", the latest took {result.heard.late_s:.2g} s" if result.heard.late_s else ""
-        heard += f"{'; ' if heard else ''}{late} came after --timeout {result.timeout_s:g}{latest}"
+        latest = f", the slowest took {result.heard.late_s:.2g} s" if result.heard.late_s else ""
+        heard += f"{'; ' if heard else ''}{late} were received after --timeout {result.timeout_s:g}{latest}"
     return Finding(
         SLOW_PLC,
         fault=late > 0,
-        finding="the PLC answers late" if late else "the PLC takes its time: a long scan, or a slow gateway",
+        finding="the PLC answers late"
+        if late
+        else "the PLC answers slowly: a long scan time, or a slow gateway",
         evidence=heard,
-        advice=_longer(result.heard.late_s) if late else "nothing need be done; the PLC answers once a scan",
+        advice=_longer(result.heard.late_s) if late else "no action needed: a PLC answers once per scan",
     )
 
 
@@ -206,7 +211,7 @@ def _longer(late_s: float) -> str:
 
 
 def _slow_if_paced(case: Case) -> Finding | None:
-    """What comes sooner than a line carries it may be an echo, whose times are the wire's."""
+    """Not for answers that arrive faster than the line allows: they may be an echo."""
     return _slow(case) if case.result.paced else None
 
 
@@ -216,9 +221,9 @@ def _usb_steps(case: Case) -> Finding | None:
     return Finding(
         "usb-latency",
         fault=False,
-        finding="answers come in steps of 16 ms: the USB adapter holds received bytes back",
-        evidence=f"{case.result.heard.steps.latency.alignment:.0%} of the times fall on the steps",
-        advice="set its latency timer to 1 ms: on Linux in "
+        finding="answers arrive in steps of 16 ms: the USB adapter delays received bytes",
+        evidence=f"{case.result.heard.steps.latency.alignment:.0%} of the times are on these steps",
+        advice="set the latency timer of the adapter to 1 ms: on Linux in "
         "/sys/bus/usb-serial/devices/ttyUSB0/latency_timer, on Windows in the port's advanced settings",
     )
 
@@ -231,10 +236,10 @@ def _lost(case: Case) -> Finding | None:
     return Finding(
         "lost-frames",
         fault=True,
-        finding="some requests find no answer",
-        evidence=f"{lost} of {total.sent}, with nothing heard in their place",
-        advice="a loose contact, another master on the line, or a PLC that is busy: "
-        "watch which sizes are hit",
+        finding="some requests get no answer",
+        evidence=f"{lost} of {total.sent}, and nothing was received in their place",
+        advice="look for a loose contact, a second master on the line, or a busy PLC; "
+        "'fatektool loopback' shows which sizes are affected",
     )
 
 
@@ -244,9 +249,9 @@ def _no_such_line(case: Case) -> Finding | None:
     return Finding(
         "faster-than-line",
         fault=False,
-        finding=f"answers come sooner than {case.line} allows: no serial line of that speed is in between",
+        finding=f"answers arrive faster than {case.line} allows: there is no serial line of this baud rate",
         evidence=f"{case.result.heard.faster_than_wire} of {case.result.total.ok} answers",
-        advice="nothing need be done; wire times are left out of the figures",
+        advice="no action needed; the figures are without wire times",
     )
 
 

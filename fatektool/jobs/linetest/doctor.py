@@ -1,9 +1,9 @@
-"""A short examination of a PLC and its line: what is wrong, by what evidence, and what to do.
+"""The diagnosis of a PLC and its line: each fault with its evidence and what to do.
 
-A short loopback test comes first, its rules are ``diagnosis``. If the line works, the brief status (40) tells
-what the PLC itself has to complain of, and an FBs's R4058 and R4059 what its high-speed link has
-(``high_speed``). If it does not, and it has a speed, the usual speeds and formats are tried: a PLC that
-answers there explains the silence here.
+A short loopback test comes first, with the rules of ``diagnosis``. If the line works, the PLC's own faults
+follow: those of its brief status (40), and of an FBs those of its high-speed link (``high_speed``). If a
+serial line does not work, the usual baud rates and formats are tried: a PLC that answers there explains why
+there is no answer here.
 """
 
 from __future__ import annotations
@@ -44,8 +44,8 @@ class Examination:
         loopback: the test's figures.
         brief: the PLC's brief status; None if it gave none.
         findings: what the rules say.
-        searched: the search for PLCs at another speed, format or station; None if there was no need of it.
-        enough: the time-out that a PLC needs whose answers come late; None if none did.
+        searched: the search at other baud rates, formats and stations; None if it was not needed.
+        enough: the time-out that a PLC with late answers needs; None if none were late.
     """
 
     loopback: LoopbackResult
@@ -56,7 +56,7 @@ class Examination:
 
     @property
     def elsewhere(self) -> list[Station]:
-        """Who was found by the search."""
+        """The stations that the search found."""
         return [] if self.searched is None else self.searched.found
 
     @property
@@ -66,11 +66,11 @@ class Examination:
 
 
 def examine(plc: Plc, on_step: Callable[[str, int, int], object] = lambda *_: None) -> Examination:
-    """Examine a PLC and its line.
+    """Diagnose a PLC and its line.
 
     Args:
-        plc: who.
-        on_step: is told what is being done, how much of it is done, and of how much.
+        plc: the PLC.
+        on_step: gets the step, how much of it is done, and of how much.
 
     Raises:
         LineError: the line was lost.
@@ -90,7 +90,7 @@ def examine(plc: Plc, on_step: Callable[[str, int, int], object] = lambda *_: No
     if result.lost is not None:
         raise TransportClosed(result.lost)
     said = diagnose(Case.of(result, link))
-    if enough is not None:  # which knows more of it
+    if enough is not None:  # it says more
         said = late + [each for each in said if each.rule != SLOW_PLC]
     found = Examination(result, findings=said, enough=enough)
     if result.total.ok:
@@ -101,7 +101,7 @@ def examine(plc: Plc, on_step: Callable[[str, int, int], object] = lambda *_: No
                 Finding(
                     "no-status",
                     fault=True,
-                    finding="the PLC gives no status",
+                    finding="the PLC does not give its status",
                     evidence=error.message,
                     advice=error.hint or "run again",
                 )
@@ -125,21 +125,21 @@ def _answers_late(enough: EnoughTime, seen: LoopbackResult, given_s: float) -> F
     advice = f"give --timeout {enough.timeout_s:g} with every command"
     if not enough.proven:
         advice = (
-            f"even with --timeout {enough.timeout_s:g} only {enough.ok} of {enough.sent} came back: "
-            "look for what holds the PLC or the gateway up"
+            f"even with --timeout {enough.timeout_s:g} only {enough.ok} of {enough.sent} were answered: "
+            "find out what delays the PLC or the gateway"
         )
     return Finding(
         SLOW_PLC,
         fault=True,
         finding="the PLC answers late",
-        evidence=f"{seen.heard.late} answers came after --timeout {given_s:g}; with {enough.timeout_s:g} s "
-        f"{enough.ok} of {enough.sent} came back, the slowest after {enough.slowest_s:.2f} s",
+        evidence=f"{seen.heard.late} answers were after --timeout {given_s:g}; with {enough.timeout_s:g} s "
+        f"{enough.ok} of {enough.sent} were answered, the slowest after {enough.slowest_s:.2f} s",
         advice=advice,
     )
 
 
 def _look_elsewhere(plc: Plc, on_step: Callable[[str, int, int], object]) -> ScanResult:
-    """Try all speeds that these PLCs have, for a bounded time; the line is left as it was."""
+    """Try all baud rates of these PLCs, for a limited time; then set the line as it was."""
     link = plc.link
     carried = [form for form in FORMATS if int(form[0]) >= (link.codec.data_bits or 0)]
     settings = [ScanSetting(link.codec, LineSettings(baud, form)) for form in carried for baud in BAUDS]
@@ -172,25 +172,29 @@ def _answers_elsewhere(found: Station) -> Finding:
     )
 
 
-# What the bits mean beyond their names no paper says: [E:battery], [E:watchdog].
+# No paper says more of these bits than their names: [E:battery], [E:watchdog].
 _FLAGS: Final = (
     (
         "battery_low",
         "the battery is low",
-        "take a backup and a snapshot now, then change it as the manual of this PLC says",
+        "take a backup and a snapshot now, then replace the battery as the manual of this PLC says",
     ),
-    ("ladder_checksum_error", "the program is damaged", "'fatektool restore' a good backup; take one first"),
+    (
+        "ladder_checksum_error",
+        "the ladder program is damaged",
+        "take a backup, then restore a good one: 'fatektool restore'",
+    ),
     (
         "watchdog_timeout",
-        "the watchdog's time ran out",
-        "a scan of the program may have taken too long: look for loops; the mode says whether the PLC runs",
+        "a watchdog time-out occurred",
+        "a scan of the program may take too long: look for loops; 'fatektool status' shows the mode",
     ),
     ("emergency_stop", "the emergency stop is active", "make the machine safe, then release it"),
 )
 
 
 def _of_flags(brief: BriefStatus) -> list[Finding]:
-    """What the PLC itself complains of."""
+    """The faults that the PLC itself reports."""
     return [
         Finding(
             name.replace("_", "-"),

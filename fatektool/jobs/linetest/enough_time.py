@@ -1,4 +1,4 @@
-"""How long a time-out a PLC needs whose answers come late: from the time seen, and proven by a try."""
+"""The time-out that a PLC with late answers needs: from the measured times, then tried."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ _QUIET_TRIES: Final = 4
 
 @dataclass(frozen=True, slots=True)
 class EnoughTime:
-    """A time-out, and what came of a try of it.
+    """A time-out, and the result of trying it.
 
     Attributes:
         timeout_s: the time-out.
         sent: loopbacks.
-        ok: those that came back in this time.
-        slowest_s: how long the slowest of them took, beside wire time.
+        ok: those that were answered in this time.
+        slowest_s: how long the slowest of them took, without wire time.
     """
 
     timeout_s: float
@@ -36,19 +36,19 @@ class EnoughTime:
 
     @property
     def proven(self) -> bool:
-        """True if all came back."""
+        """True if all were answered."""
         return 0 < self.ok == self.sent
 
 
 def find_enough_time(plc: Plc, late_s: float) -> EnoughTime:
-    """Try longer time-outs until one is enough; the link has the last one then.
+    """Try longer time-outs until one is long enough; the link keeps the last one.
 
     Args:
-        plc: whose answers came late.
-        late_s: the longest that one took.
+        plc: the PLC with late answers.
+        late_s: how long the slowest answer took.
 
     Raises:
-        KeyboardInterrupt: as it came.
+        KeyboardInterrupt: Ctrl-C.
         LineError: the line was lost.
     """
     link = plc.link
@@ -73,7 +73,7 @@ def find_enough_time(plc: Plc, late_s: float) -> EnoughTime:
 
 
 def _wait_for_quiet(plc: Plc, quiet_s: float) -> None:
-    """Receive what may still come."""
+    """Receive late answers until nothing comes for so long."""
     receiver, clock = plc.link.receiver, plc.link.transport.clock
     for _ in range(_QUIET_TRIES):
         received = plc.link.counters.bytes_received

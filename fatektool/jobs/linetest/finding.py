@@ -1,4 +1,4 @@
-"""What an examination finds, and what it is found by."""
+"""A finding of the diagnosis, and what the rules look at."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ class Finding:
 
     Attributes:
         rule: its name, for scripts.
-        fault: False for what is worth knowing and no fault.
+        fault: True for a fault, False for a note.
         finding: what it is.
-        evidence: the figures that say so.
+        evidence: the figures that show it.
         advice: what to do.
     """
 
@@ -35,7 +35,7 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """What the rules look at: a test's figures, and the line it was run on."""
+    """What the rules look at: the figures of a test, and its line."""
 
     result: LoopbackResult
     line: LineSettings

@@ -1,7 +1,7 @@
-"""What the registers of the high-speed link (CLINK, MD3) say of its slaves, for the doctor.
+"""The errors that an FBs logs of its high-speed link (CLINK, MD3), for ``doctor``.
 
-FBs link paper, section 13.1.2, MD3: R4058 and R4059. They are asked of an FBs alone, as on other PLCs nobody
-says what they are.
+FBs link paper, section 13.1.2, MD3: R4058 and R4059. They are only read from an FBs: their meaning in other
+PLCs is not documented.
 """
 
 from __future__ import annotations

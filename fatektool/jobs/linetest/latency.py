@@ -1,7 +1,7 @@
 """How long exchanges took, counted into buckets: after millions of them the memory is what it was after some.
 
 A bucket is 2^(1/128) wide, half a per cent, so that a percentile is as good as the clock. Minimum, maximum
-and mean are exact, and no percentile lies outside of them.
+and mean are exact, and no percentile is outside of them.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _MOST_BARS: Final = 20
 
 @dataclass(frozen=True, slots=True)
 class HistogramBar:
-    """How many times lay in ``from_s <= time < to_s``, in seconds."""
+    """How many times were in ``from_s <= time < to_s``, in seconds."""
 
     from_s: float
     to_s: float

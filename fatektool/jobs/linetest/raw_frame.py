@@ -1,4 +1,4 @@
-"""The frame of a ladder program of one's own: a start code, a text, an end code, each code there or not.
+"""The frame of the user's own ladder program: a text between an optional start code and end code.
 
 It is what CLINK (FUN151) sends and receives in MD1 and MD2 (FBs link paper, chapter 13): SR+1 holds the start
 code in its high byte and the end code in its low byte, 0 for none, and a frame has 1 to 511 bytes::
@@ -23,7 +23,7 @@ _CODE: Final = re.compile(r"(?:0x)?([0-9A-Fa-f]{1,2})H?|none", re.ASCII | re.IGN
 
 @dataclass(frozen=True, slots=True)
 class RawFrame:
-    """What stands around a text.
+    """The codes around a text.
 
     Attributes:
         start: code, 1 to 255; None for none.
@@ -45,7 +45,7 @@ class RawFrame:
         if len(codes) != 2 or None in codes:
             raise UsageError(
                 f"raw frame {text[:40]!r}: expected START,END as bytes in hex, such as 02,03",
-                hint="none stands for a code that is not there: none,0D",
+                hint="write none for a missing code: none,0D",
             )
         start, end = (int(code[1] or "0", 16) or None for code in codes if code is not None)
         return cls(start, end)
@@ -70,7 +70,7 @@ class RawFrame:
         return MAX_FRAME - self.code_count
 
     def characters(self, data_bits: int) -> bytes:
-        """What a text may hold, in rising order: all that such a line carries, but the codes.
+        """The characters that a text may have, in rising order: all that the line carries but the codes.
 
         Args:
             data_bits: of the line, 5 to 8.
@@ -78,10 +78,10 @@ class RawFrame:
         return bytes(byte for byte in range(1 << data_bits) if byte not in {self.start, self.end})
 
     def holds_frame(self, heard: bytes, size: int) -> bool:
-        """True if there is a frame among these bytes: from code to code, or as long as was expected.
+        """True if there is a frame among these bytes: from code to code, or as long as expected.
 
         Args:
-            heard: what came.
+            heard: the bytes received.
             size: bytes of the frame that was expected, for one without an end code.
         """
         if self.start is not None:

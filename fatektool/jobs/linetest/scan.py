@@ -1,16 +1,16 @@
-"""Who is on the line: which stations answer, at which speed and format, in which protocol.
+"""Which stations are on the line, with which baud rate, format and protocol.
 
-A probe is what the codec says, a brief status (40) or a register, sent once: silence is the usual answer, and
-its deadline is all that a scan is made of. A refusal is somebody too. What is heard and is no frame makes a
-probe be repeated, as it may be an answer come to grief. A late answer says itself which station it is of, so
-it counts as well as one in time.
+A probe is a request of the codec, for the brief status (40) or a register, sent once: most stations are
+silent, and their time-outs are most of a scan's time. A refusal is an answer too. After bytes that are no
+valid frame the probe is repeated, as they may be a damaged answer. A late answer has its station in it, so it
+counts like one in time.
 
 Order: the PLCs of one line share one setting. So the first station is tried at every setting before the
 others are; then the settings that answered are scanned to the end, then the rest.
 
-A port whose station check is switched off answers every number, so a scan of it would find as many PLCs as it
-asks for. So when the second station that is asked at a setting answers as the first did, and none was silent,
-numbers far apart are asked. If all of them answer the same, it is one PLC, and the setting is done.
+A port without a station check answers for every number, so a scan would find a PLC at each. So when the
+first two stations with a setting give the same answer, and none was silent, numbers far apart are tried. If
+all of them give the same answer, it is one PLC, and the setting is done.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ _MOST_REFUSED: Final = 3
 _LATE_S: Final = 2.0
 _ENOUGH_TO_COMPARE: Final = 2
 _FAR_APART: Final = (254, 247, 191, 128)
-"""Numbers that hardly anybody has, asked where every number may be answered."""
+"""Station numbers that are rarely used, to find a port that answers for every number."""
 
 
 def scan(
@@ -66,15 +66,15 @@ def scan(
         transport: the medium; its speed is set anew for each setting.
         settings: which to try, the likeliest first.
         stations: 0 to 255 each; one that a setting's protocol does not have is not asked there.
-        timeout_s: a PLC's time to answer, beside wire time.
-        retries: further probes where something was heard that is no frame.
-        most: end when so many were found; None for all.
+        timeout_s: a PLC's time to answer, without wire time.
+        retries: further probes after bytes that are no valid frame.
+        most: end when so many stations were found; None for all.
         longest_s: begin no probe after so many seconds.
-        on_found: is told each station at once.
-        on_probe: is told how many probes are done, and how many there are.
+        on_found: gets each station at once.
+        on_probe: gets how many probes are done, and how many there are.
 
     Raises:
-        LineError: the medium is gone, or takes none of the settings.
+        LineError: the line is gone, or supports none of the settings.
     """
     if not settings or not stations:
         raise UsageError("scan: expected settings, and stations such as 1 to 254")
@@ -147,17 +147,17 @@ class _Scanner:
         self._heard_at = -inf
 
     def is_open(self, setting: ScanSetting) -> bool:
-        """True if there is something to ask at this setting; the line has it then.
+        """True if there is something to ask with this setting; the line is set to it then.
 
         Raises:
-            LineError: the port has taken none so far.
+            LineError: the port supports none of the settings so far.
         """
         if setting not in self._done and setting != self._setting:
             self._change_to(setting)
         return setting not in self._done
 
     def probe(self, setting: ScanSetting, station: int) -> None:
-        """Ask one station, again only after noise, and see whether it is there under every number."""
+        """Ask one station, again only after noise, and find out whether the port answers for every number."""
         if self._ask_until_clear(setting, station):
             self._compare(setting)
         else:
@@ -178,7 +178,7 @@ class _Scanner:
         return False
 
     def _compare(self, setting: ScanSetting) -> None:
-        """Does this station answer because it is there, or because the port answers any number?"""
+        """Is this a station of its own, or a port that answers for every number?"""
         answers = self._answers.setdefault(setting, {})
         if setting in self._silent or len(answers) != _ENOUGH_TO_COMPARE:
             return
@@ -215,7 +215,7 @@ class _Scanner:
         self._decoder = setting.codec.decoder()
 
     def listen_for_late(self) -> None:
-        """At the end, where nobody was heard: is somebody only late?"""
+        """At the end, if no station was found: wait for late answers."""
         until = self._transport.clock() + min(3 * self._timeout_s, _LATE_S)
         while self._setting and not self._result.found and (rest := until - self._transport.clock()) > 0:
             try:
@@ -249,7 +249,7 @@ class _Scanner:
                 self._noise_bytes += self._decoder.clear()
         except TransportTimeout:
             return False
-        except TransportClosed:  # a gateway that hangs up on what it does not understand
+        except TransportClosed:  # a gateway may close the connection after a request it does not understand
             self._closed += 1
             if self._closed >= _MOST_CLOSED:
                 raise
@@ -257,7 +257,7 @@ class _Scanner:
         return False
 
     def _keep_quiet(self, setting: ScanSetting) -> None:
-        """Let the silence pass that the protocol wants between frames, and look at what breaks it."""
+        """Wait for the silence that the protocol needs between frames; take what is received meanwhile."""
         quiet_s = setting.codec.quiet_chars * setting.line.byte_time_s
         while (rest := self._heard_at + quiet_s - self._transport.clock()) > 0:
             try:
@@ -266,7 +266,7 @@ class _Scanner:
                 continue
 
     def _look_at(self, data: bytes, setting: ScanSetting, station: int = -1) -> list[int]:
-        """The stations whose answers are in the bytes; ``station`` is the one that is waited for."""
+        """The stations whose answers are in the bytes; ``station`` is the one that was asked."""
         answered: list[int] = []
         if data:
             self._heard_at = self._transport.clock()

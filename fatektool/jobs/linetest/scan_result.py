@@ -1,4 +1,4 @@
-"""What a scan is made of and what it found."""
+"""What a scan tries and what it finds."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ScanSetting:
-    """A protocol at a speed and format."""
+    """A protocol with a baud rate and format."""
 
     codec: Codec
     line: LineSettings
@@ -24,12 +24,12 @@ class Station:
     """A station that answered.
 
     Attributes:
-        station: as it answered.
-        setting: at which it did.
-        brief: its brief status; None if it refused to tell, or was not asked.
+        station: its number.
+        setting: with which it answered.
+        brief: its brief status; None if it was refused or not asked for.
         latency_s: how long it took; None if that is not known.
         late: True if its answer came after the time-out.
-        any_number: True if this PLC answers every station's number.
+        any_number: True if this PLC answers for every station number.
     """
 
     station: int
@@ -42,7 +42,7 @@ class Station:
 
 @dataclass(frozen=True, slots=True)
 class Unclear:
-    """A place where something was heard, and no frame of it."""
+    """A station and setting where bytes were received, but no valid frame."""
 
     station: int
     setting: ScanSetting
@@ -51,14 +51,14 @@ class Unclear:
 
 @dataclass(slots=True)
 class ScanResult:
-    """What a scan found, in the order it was found.
+    """What a scan found, in the order in which it was found.
 
     Attributes:
-        found: who answered.
-        unclear: where something was heard that is no frame.
-        refused: settings that this port does not take.
-        tried: those that it took.
-        probes: how often somebody was asked.
+        found: the stations that answered.
+        unclear: where bytes were received, but no valid frame.
+        refused: settings that this port does not support.
+        tried: settings that it supports.
+        probes: how many requests were sent.
         duration_s: how long it took.
         interrupted: by Ctrl-C.
         out_of_time: True if it ended before all was tried.

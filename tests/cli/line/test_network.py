@@ -53,7 +53,7 @@ def test_a_module_answers_and_is_told_once(module: str, cli: Cli) -> None:
     done = cli("scan", "--network", module, "--timeout", "0.5")
     assert done.code == 0
     head, *lines = done.out.splitlines()
-    assert head == "127.0.0.1  351 bytes; what they mean is not known:"
+    assert head == "127.0.0.1  351 bytes; their meaning is not documented:"
     assert len(lines) == 22  # of 16 bytes each
     assert lines[0].startswith("  0000  66 61 74 65 6B 74 6F 6F")
     assert "1 module answered at 127.0.0.1" in done.err

@@ -26,18 +26,18 @@ def findings(plc: Plc, count: int = 240) -> dict[str, Finding]:
 RULES: list[tuple[dict[str, Any], set[str], str]] = [
     ({}, set(), ""),
     ({"scan_ms": 3}, set(), ""),
-    ({"faults": ["drop=1"]}, {"silence"}, "0 bytes heard"),
-    ({"faults": ["wrong-line=1"]}, {"wrong-line"}, "no frame"),
-    ({"faults": ["echo=1"]}, {"echo"}, "bytes heard"),
-    ({"faults": ["echo=1", "drop=1"]}, {"echo-only"}, "all of them requests"),
+    ({"faults": ["drop=1"]}, {"silence"}, "0 bytes received"),
+    ({"faults": ["wrong-line=1"]}, {"wrong-line"}, "no valid frame"),
+    ({"faults": ["echo=1"]}, {"echo"}, "bytes received"),
+    ({"faults": ["echo=1", "drop=1"]}, {"echo-only"}, "all of them echo"),
     ({"faults": ["bit-errors=0.002"]}, {"errors-grow-with-size"}, "256: "),
-    ({"faults": ["flip=0.2"]}, {"damaged-frames"}, "no frame"),
-    ({"faults": ["drop=0.1"]}, {"lost-frames"}, "nothing heard in their place"),
+    ({"faults": ["flip=0.2"]}, {"damaged-frames"}, "no valid frame"),
+    ({"faults": ["drop=0.1"]}, {"lost-frames"}, "nothing was received in their place"),
     ({"faults": ["slow=0.2"]}, {"slow-plc"}, "after --timeout 0.5"),
     ({"scan_ms": 250}, {"slow-plc"}, "250"),
-    ({"latency_timer_ms": 16}, {"usb-latency"}, "fall on the steps"),
-    ({"faults": ["twins=0.3"]}, {"two-on-one-station"}, "a second time"),
-    ({"faults": ["wrong-station=0.2"]}, {"foreign-station", "lost-frames"}, "answers of station"),
+    ({"latency_timer_ms": 16}, {"usb-latency"}, "on these steps"),
+    ({"faults": ["twins=0.3"]}, {"two-on-one-station"}, "received twice"),
+    ({"faults": ["wrong-station=0.2"]}, {"foreign-station", "lost-frames"}, "answers from station"),
 ]
 
 

@@ -141,7 +141,7 @@ def test_the_time_out_that_is_recommended_is_proven_by_a_try(delay_ms: int) -> N
     (late,) = found.findings
     assert (late.rule, late.fault, found.brief is not None) == ("slow-plc", True, True)
     assert late.advice == f"give --timeout {found.enough.timeout_s:g} with every command"
-    assert "4 of 4 came back, the slowest after" in late.evidence
+    assert "4 of 4 were answered, the slowest after" in late.evidence
     again = simulated(baud=9600, scan_ms=delay_ms, timeout_s=found.enough.timeout_s)
     assert all(not finding.fault for finding in examine(again.plc).findings)
 

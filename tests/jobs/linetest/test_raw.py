@@ -282,4 +282,4 @@ def test_the_command_in_words(cli: Cli) -> None:
     assert done.code == 1
     assert "frame       start 02, end 03" in done.out
     assert "2 mismatch" in done.out
-    assert "FAULT: something comes back, but never what was sent" in done.out
+    assert "FAULT: bytes are received, but never the text that was sent" in done.out

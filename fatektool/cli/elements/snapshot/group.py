@@ -28,7 +28,7 @@ class SnapshotGroup(LazyGroup):
     epilog="Example: fatektool snapshot R0-R99 D4:f32 -p sim: -o snapshots/ --keep 30d",
 )
 def snapshot_command() -> None:
-    """Read a PLC's data to JSON, compare snapshots, put one back.
+    """Save a PLC's data to JSON, compare snapshots, write one back.
 
     'fatektool snapshot ELEMENTS…' is short for 'fatektool snapshot take ELEMENTS…': see 'fatektool snapshot
     take --help' for --spec, --all, --output, --append, --format and --keep.

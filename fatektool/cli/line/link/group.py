@@ -11,16 +11,16 @@ from fatektool.cli.shared.lazy_group import LazyGroup, Subcommand, commands
     "link",
     cls=LazyGroup,
     sections=commands(
-        ports=Subcommand("line.link.ports", "Show the communication ports 1 to 4 and what is set for them."),
+        ports=Subcommand("line.link.ports", "Show the communication ports 1 to 4 and their settings."),
         table=Subcommand("line.link.table.group", "Show, check, save and write communication tables."),
-        result=Subcommand("line.link.result", "Explain what an instruction says of its last transaction."),
+        result=Subcommand("line.link.result", "Explain the result of the last transaction."),
         modem=Subcommand("line.link.modem", "Show and set the modem of port 1."),
     ),
     epilog="Example: fatektool link ports -p /dev/ttyUSB0",
 )
 def link_command() -> None:
-    """The PLC's communication ports, and the tables of its instructions CLINK (FUN151) and M-BUS (FUN150).
+    """The PLC's own communication ports, and the tables of CLINK (FUN151) and M-BUS (FUN150).
 
-    All of it concerns the PLC as a master of other stations: what it asks of whom, through which port, and
-    why it gets no answer.
+    These commands are about the PLC as a master of other stations: which requests it sends to which station,
+    through which port, and why it gets no answer.
     """

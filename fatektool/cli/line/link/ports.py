@@ -1,4 +1,4 @@
-"""``link ports``: the communication ports, in words."""
+"""``link ports``: the state and settings of the communication ports."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 def ports_command(connection: Connection, voice: Voice) -> int:
     """Show the communication ports 1 to 4: state, protocol, time-outs, last result; high-speed link, modem.
 
-    What this model does not have is shown as '-', and named on stderr with -v.
+    A register that this model does not have is shown as '-'; -v names it.
     """
     with connection.open(voice) as plc:
         report = read_ports(plc)

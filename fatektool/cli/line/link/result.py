@@ -1,4 +1,4 @@
-"""``link result``: what WR says of an instruction's last transaction, and what to do."""
+"""``link result``: the result of an instruction's last transaction, and what to do."""
 
 from __future__ import annotations
 
@@ -29,17 +29,17 @@ if TYPE_CHECKING:
 @click.option(
     "--kind",
     type=KIND,
-    help="CLINK's mode (FUN151), or mbus (FUN150): codes differ by kind. md1 and md2 show what was "
-    "received, md3 the errors of the running link.",
+    help="Mode of CLINK (FUN151), or mbus (FUN150): result codes differ by kind. md1 and md2 also show the "
+    "received data, md3 the errors of the running link.",
 )
 @click.option(
     "--check",
     is_flag=True,
-    help="Exit 1 if the result is not 0, or, of md3, if R4058 or R4059 holds an error.",
+    help="Exit 1 if the result is not 0, or with md3 if R4058 or R4059 has an error.",
 )
 @connection_options
 def result_command(wr: str, connection: Connection, voice: Voice, *, kind: str | None, check: bool) -> int:
-    """Explain the registers from operand WR on: result, station, command, where the instruction stands."""
+    """Explain the registers from operand WR on: result, station, command, state of the instruction."""
     start = parse_start(wr, "WR")
     with connection.open(voice) as plc:
         report = read_result(plc, start, None if kind is None else TableKind(kind))
@@ -49,7 +49,9 @@ def result_command(wr: str, connection: Connection, voice: Voice, *, kind: str |
     for warning in host.warnings():
         voice.warn(warning)
     if check and report.kind is None and report.good:
-        voice.warn("without --kind, 0 proves little: of md3 it says nothing of the stations; name the kind")
+        voice.warn(
+            "result 0 without --kind is no proof: with md3 it says nothing about the stations; give --kind"
+        )
     return int(check and not report.good)
 
 
@@ -59,7 +61,7 @@ def _lines(report: ResultReport) -> Iterator[str]:
     if report.next_step is not None:
         rows.append(("do", report.next_step))
     if not report.code_alone:
-        command = result.command_meaning(report.kind) or "no command of such a transaction"
+        command = result.command_meaning(report.kind) or "not a command of this kind"
         rows += [
             ("transaction", result.transaction),
             ("station", result.station),
@@ -69,10 +71,10 @@ def _lines(report: ResultReport) -> Iterator[str]:
         outputs = {"ACT": operation.active, "ERR": operation.error, "DN": operation.done}
         rows += [
             ("outputs", " ".join(name for name, on in outputs.items() if on) or "none"),
-            ("port", "waits for it, another instruction has it" if operation.waiting else "not waited for"),
+            ("port", "waiting, another instruction uses it" if operation.waiting else "not waiting"),
         ]
     if operation.repeated is not None:
-        rows.append(("run", "not the first" if operation.repeated else "the first, or none yet"))
+        rows.append(("run", "second or later" if operation.repeated else "first, or none yet"))
     if report.high_speed is not None:
         rows += abnormal_rows(report.high_speed)
         rows += [] if report.high_speed.good else [("do", ABNORMAL_STEP)]
@@ -83,5 +85,5 @@ def _lines(report: ResultReport) -> Iterator[str]:
         if data:
             rows += [("data", data.hex(" ").upper()), ("text", printable(data))]
     if report.kind is None:
-        rows.append(("kind", "not named: --kind says which of these readings holds"))
+        rows.append(("kind", "not given: --kind selects one of these meanings"))
     yield from table(rows)

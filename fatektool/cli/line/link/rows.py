@@ -21,10 +21,10 @@ def port_rows(port: Port) -> list[tuple[str, object]]:
         if not result.none_yet:
             told += f" (transaction {result.transaction}, station {result.station})"
     elif port.continuous is False:
-        told = "kept for continuous execution alone; else see 'fatektool link result'"
+        told = "only kept in continuous execution; otherwise see 'fatektool link result'"
     return [
         ("state", _word(port.free, "free", "busy")),
-        ("table", _word(port.finished, "last transaction finished", "not at its end")),
+        ("table", _word(port.finished, "last transaction finished", "not finished")),
         ("as a slave", port.protocol),
         ("parameters", None if port.parameters is None else f"{port.parameters:04X}H"),
         ("TX delay", _unit(port.tx_delay_s, "s")),
@@ -44,7 +44,7 @@ def _timeout(port: Port) -> str | None:
 def detection_rows(detection: MessageDetection) -> list[tuple[str, object]]:
     """How the end of a message is found."""
     by_time = detection.by_time
-    ends = None if by_time is None else "by R4148" if by_time else "as usual (M1956 off)"
+    ends = None if by_time is None else "by R4148" if by_time else "default (M1956 off)"
     return [("end without code", ends), ("R4148", _unit(detection.interval_ms, "ms"))]
 
 
@@ -55,7 +55,7 @@ def high_speed_rows(link: HighSpeedLink) -> list[tuple[str, object]]:
         station = f"{link.station} ({'set' if link.station_set else 'shown'} by R4055)"
     return [
         ("this PLC", _word(link.slave, "slave", "no slave")),
-        ("cycles", _word(link.one_cycle, "one, then stop", "for ever")),
+        ("cycles", _word(link.one_cycle, "one, then stop", "endless")),
         ("master station", link.master_station),
         ("own station", station),
         *abnormal_rows(link),

@@ -1,7 +1,7 @@
-"""The exchange of 4E: a PLC sends back what it is sent, in frames of its protocol.
+"""The exchange of 4E: a PLC returns the characters of the request, in frames of its protocol.
 
-A request's echo and its answer are the same by content. So before the first exchange another request is sent,
-by which an echo is known (``Attempts.learn_echo``).
+The echo of such a request and its answer are equal. So before the first exchange another request is sent,
+which shows whether the line echoes (``Attempts.learn_echo``).
 """
 
 from __future__ import annotations
@@ -33,22 +33,22 @@ class PlcExchanger(Exchanger):
 
     @property
     def bytes_received(self) -> int:
-        """All bytes that came so far."""
+        """All bytes received so far."""
         return self._link.counters.bytes_received
 
     @property
     def echoes(self) -> bool | None:
-        """True on a line that gives back what it takes; None if that is not known."""
+        """True on a line that echoes what is sent; None if that is not known."""
         return self._link.echoes
 
     def begin(self) -> None:
-        """Learn whether the line echoes. From now on every answer has the same time."""
+        """Find out whether the line echoes. From now on the time-out is the same for every answer."""
         self._link.state.extends_wait = False
         self._link.state.late_s = 0.0
         self._learn_echo()
 
     def _learn_echo(self) -> bool | None:
-        """By a request that cannot be mistaken for its echo; where nobody answers nothing is learnt: None."""
+        """Send a request whose answer differs from its echo; None if there is no answer."""
         for _ in range(_LEARNING_TRIES):
             self._link.receiver.drop_input()
             try:
@@ -62,7 +62,7 @@ class PlcExchanger(Exchanger):
         return self._link.echoes
 
     def end(self) -> None:
-        """The next one may be given more time again."""
+        """Let the time-out be extended again."""
         self._link.state.extends_wait = True
 
     def frame_bytes(self, data: bytes) -> int:
@@ -70,11 +70,11 @@ class PlcExchanger(Exchanger):
         return self._link.codec.answer_bytes(Loopback(data))
 
     def listen_until(self, moment: float) -> None:
-        """Wait until a moment of the transport's clock, and look at whatever comes unasked."""
+        """Wait until a moment of the transport's clock, and take what is received meanwhile."""
         self._link.receiver.listen_until(moment)
 
     def ready(self) -> None:
-        """Look at what lies in the input."""
+        """Take what was received before this exchange."""
         self._link.receiver.drop_input()
         self._seen.clear()
 
@@ -95,7 +95,7 @@ class PlcExchanger(Exchanger):
         return None
 
     def _worst_heard(self, heard_bytes: int) -> str:
-        """What an exchange without an answer counts as."""
+        """The kind of error of an exchange without its answer."""
         for kind in _WORST_FIRST:
             if kind in self._seen:
                 return kind
@@ -104,7 +104,7 @@ class PlcExchanger(Exchanger):
         self._hear_noise(heard_bytes, b"")  # the beginning of a frame
         return "garbled"
 
-    # --- what is heard beside the answers ------------------------------------------------------------
+    # --- what is received beside the answers ---------------------------------------------------------
 
     def _on_stray(self, frame: Frame) -> None:
         heard = self._heard

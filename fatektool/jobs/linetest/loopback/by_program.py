@@ -1,8 +1,8 @@
-"""The exchange with a ladder program of one's own, which sends back each frame that it gets.
+"""The exchange with the user's own ladder program, which returns each frame that it receives.
 
-Such a frame has no station, no command and no checksum. So an answer is known by its text alone, and nothing
-can be asked by which the echo of a two-wire line would be known: an echo passes for an answer. It comes
-sooner than any answer could, which the diagnosis tells (``raw_rules``).
+Such a frame has no station, no command and no checksum. So an answer is recognised by its text alone, and no
+request can show whether a two-wire line echoes: an echo is counted as an answer. It arrives faster than any
+answer can, and the diagnosis reports that (``raw_rules``).
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ if TYPE_CHECKING:
 
 _READ_BYTES: Final = 4096
 _MOST_KEPT: Final = 1 << 14
-"""Of a line that babbles on while an answer is waited for, the last bytes are looked at."""
+"""So many of the last bytes are kept while an answer is waited for."""
 
 
 class RawExchanger(Exchanger):
-    """Texts in frames of the ladder's author, once each.
+    """Texts in the frames of the ladder program, once each.
 
     Args:
-        link: whose line, time-out and speed are used; nothing is said in its protocol.
-        heard: is told what is heard beside the answers.
+        link: its line, time-out and baud rate are used, not its protocol.
+        heard: counts what is received beside the answers.
         frame: start and end code.
     """
 
@@ -41,7 +41,7 @@ class RawExchanger(Exchanger):
         self._transport = link.transport
 
     def begin(self) -> None:
-        """Nothing can be learnt of the line before the first exchange."""
+        """There is nothing to find out before the first exchange."""
 
     def end(self) -> None:
         """Nothing was set."""
@@ -51,11 +51,11 @@ class RawExchanger(Exchanger):
         return len(self._frame.wrap(data))
 
     def listen_until(self, moment: float) -> None:
-        """Wait until a moment of the transport's clock, and look at whatever comes unasked."""
+        """Wait until a moment of the transport's clock, and take what is received meanwhile."""
         self._overhear(self._receive(moment))
 
     def ready(self) -> None:
-        """Look at what lies in the input."""
+        """Take what was received before this exchange."""
         found = self._transport.drain()
         self.bytes_received += len(found)
         self._overhear(found)
@@ -79,7 +79,7 @@ class RawExchanger(Exchanger):
         return None
 
     def _receive(self, moment: float, wanted: bytes | None = None) -> bytes:
-        """What comes until then, or until the frame that is wanted is there."""
+        """What is received until then, or until the expected frame is complete."""
         got = b""
         while (wanted is None or wanted not in got) and (rest := moment - self._transport.clock()) > 0:
             try:
@@ -91,7 +91,7 @@ class RawExchanger(Exchanger):
         return got
 
     def _kind_of(self, got: bytes, size: int) -> str:
-        """What an exchange without its answer counts as."""
+        """The kind of error of an exchange without its answer."""
         if not got:
             return "timeout"
         if any(self._frame.wrap(text) in got for text in self._earlier):
@@ -99,7 +99,7 @@ class RawExchanger(Exchanger):
         return "mismatch" if self._frame.holds_frame(got, size) else "garbled"
 
     def _overhear(self, found: bytes) -> None:
-        """Look at bytes that are not the answer waited for."""
+        """Count bytes that are not the expected answer."""
         for text in self.unanswered:
             found, late = self._without(found, text)
             self._heard.late += late

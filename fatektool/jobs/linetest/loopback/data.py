@@ -1,11 +1,11 @@
-"""What a loopback test sends: patterns that are hard on a line, made of characters that it can carry.
+"""The characters that a loopback test sends: patterns that are hard for a line.
 
 ::
 
-    ramp        every character in turn, begun one further on each time: no character goes untested
-    random      seeded
-    alternate   0101… and 1010… by turns: the most edges a byte can have
-    ones        all ones: the longest the line rests, where a receiver loses the clock
+    ramp        every character in turn, each text begins with the next one: all characters are tested
+    random      from a seed
+    alternate   0101… and 1010… in turn: as many edges as a byte can have
+    ones        all ones: no edges for as long as possible, where a receiver loses the clock
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Pattern(Enum):
 def payloads(
     sizes: Sequence[int], patterns: Sequence[Pattern], characters: bytes, seed: int
 ) -> Iterator[bytes]:
-    """Without end: all sizes with the first pattern, all with the next, and round again.
+    """Without end: all sizes with the first pattern, then with the next, then from the first again.
 
     Args:
         sizes: characters of each.

@@ -1,13 +1,13 @@
-"""One exchange of a loopback test, whatever carries it: what the test's loop needs, what all carriers share.
+"""One exchange of a loopback test: what the loop of the test needs, whatever the frame is.
 
 ::
 
     loopback            the loop: what to send next, when to end, figures
     └─ Exchanger        one exchange -> None for a good one, or the kind of its error
        ├─ PlcExchanger  4E, in frames of the protocol
-       └─ RawExchanger  the frame of a ladder program of one's own
+       └─ RawExchanger  the frame of the user's own ladder program
 
-A connection that breaks costs one exchange; if it breaks again before one was good, it is told.
+A broken connection is one failed exchange; if it breaks again before one was good, the test ends.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Exchanger(ABC):
 
     Args:
         link: the line.
-        heard: is told what is heard beside the answers.
+        heard: counts what is received beside the answers.
 
     Attributes:
         characters: what may be sent, in rising order.
@@ -51,12 +51,12 @@ class Exchanger(ABC):
     @property
     @abstractmethod
     def bytes_received(self) -> int:
-        """All bytes that came so far."""
+        """All bytes received so far."""
 
     @property
     @abstractmethod
     def echoes(self) -> bool | None:
-        """True on a line that gives back what it takes; None if that is not known."""
+        """True on a line that echoes what is sent; None if that is not known."""
 
     @abstractmethod
     def begin(self) -> None:
@@ -72,25 +72,25 @@ class Exchanger(ABC):
 
     @abstractmethod
     def listen_until(self, moment: float) -> None:
-        """Wait until a moment of the transport's clock, and look at whatever comes unasked."""
+        """Wait until a moment of the transport's clock, and take what is received meanwhile."""
 
     @abstractmethod
     def ready(self) -> None:
-        """Look at what lies in the input, so that it is not taken for the next answer."""
+        """Take what was received before, so that it is not taken for the next answer."""
 
     @abstractmethod
     def _try(self, data: bytes) -> str | None:
         """Exchange once; None if the answer is good, else the kind of the error."""
 
     def exchange(self, data: bytes) -> str | None:
-        """Send characters once; None if they came back, else the kind of the error.
+        """Send characters once; None if they were returned, else the kind of the error.
 
         Raises:
             TransportClosed: the line is lost.
         """
         try:
             error = self._try(data)
-        except TransportClosed:  # a gateway may hang up once; the next request calls it again
+        except TransportClosed:  # a gateway may close it once; the next request connects again
             if self._hung_up:
                 raise
             self._hung_up = True

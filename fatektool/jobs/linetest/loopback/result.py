@@ -1,4 +1,4 @@
-"""A loopback test as a value: what to send, and what came of it."""
+"""A loopback test as a value: its plan, its counts, its result."""
 
 from __future__ import annotations
 
@@ -33,18 +33,18 @@ def usual_sizes(raw: RawFrame | None) -> tuple[int, ...]:
 
 @dataclass(frozen=True, slots=True)
 class LoopbackPlan:
-    """What to send, how often, and what is still good.
+    """What to send, how often, and the limits.
 
     Args:
         count: exchanges; None for no limit.
         duration_s: begin none after so many seconds; None for no limit.
-        sizes: characters, 0 to 256 each, swept; in frames of one's own up to 511 bytes with the codes.
-        patterns: swept too.
+        sizes: numbers of characters, used in turn: 0 to 256; with ``raw`` up to 511 bytes with the codes.
+        patterns: used in turn.
         interval_s: from the start of one to the start of the next; 0 for at once.
         seed: of the random pattern.
-        max_error_rate: 0 to 1; more fails.
-        max_p99_ms: more fails; None for no limit.
-        raw: start and end code of a ladder program of one's own; None for 4E.
+        max_error_rate: 0 to 1; a higher rate fails.
+        max_p99_ms: a higher value fails; None for no limit.
+        raw: start and end code of the user's own ladder program; None for 4E.
 
     Raises:
         UsageError: a value out of its range.
@@ -116,17 +116,17 @@ class Tally:
 
 @dataclass(slots=True)
 class Heard:
-    """What was heard beside the answers: the diagnosis lives on it.
+    """What was received beside the answers, for the diagnosis.
 
     Attributes:
-        twice: answers that came a second time.
-        late: answers that came after their exchange was given up.
-        late_s: the longest that one of those took, beside wire time; 0 if that is not known.
-        foreign: good frames of other stations, by station.
-        noise_bytes: bytes that were no frame.
+        twice: answers that were received a second time.
+        late: answers that were received after the time-out of their exchange.
+        late_s: how long the slowest of those took, without wire time; 0 if that is not known.
+        foreign: valid frames of other stations, by station.
+        noise_bytes: bytes that are no valid frame.
         noise: the first of them.
-        faster_than_wire: answers that came sooner than the line's speed allows.
-        steps: whether answers come in steps of a USB adapter.
+        faster_than_wire: answers that arrived faster than the line's baud rate allows.
+        steps: whether answers arrive in the steps of a USB adapter.
     """
 
     twice: int = 0
@@ -141,21 +141,21 @@ class Heard:
 
 @dataclass(slots=True)
 class LoopbackResult:
-    """What came of a test, or of what was done of it.
+    """The result of a test, or of the part of it that was done.
 
     Attributes:
         plan: what was asked for.
-        timeout_s: how long an answer was waited for, beside wire time.
+        timeout_s: the time-out of each answer, without wire time.
         total: all exchanges.
         by_size: those of each size.
-        heard: what was heard beside.
+        heard: what was received beside the answers.
         bytes_sent: of the requests.
-        bytes_received: all that was heard.
+        bytes_received: all bytes received.
         wire_s: time on the wire of what was sent and received, at the line's speed.
         duration_s: from the first request to the end.
         ended: ``count``, ``duration``, ``interrupted`` or ``line lost``.
         lost: why the line was lost, in words; None if it was not.
-        echoes: True on a line that gives back what it takes; None if that is not known.
+        echoes: True on a line that echoes what is sent; None if that is not known.
     """
 
     plan: LoopbackPlan
@@ -173,22 +173,22 @@ class LoopbackResult:
 
     @property
     def paced(self) -> bool:
-        """False if most answers came sooner than a line of this speed could carry them: there is none."""
+        """False if most answers arrived faster than the baud rate allows: there is no such line."""
         return self.heard.faster_than_wire * 2 <= self.total.ok
 
     @property
     def line_use(self) -> float | None:
-        """Wire time over time; None where no line of that speed is, or no time has passed."""
+        """Wire time divided by time; None without a line of this baud rate, or if no time has passed."""
         return self.wire_s / self.duration_s if self.paced and self.duration_s > 0 else None
 
     @property
     def turnaround(self) -> Times:
-        """The PLC's time to answer: without wire time, if there is a wire of that speed."""
+        """The PLC's time to answer: without wire time, if there is a line of this baud rate."""
         return self.total.turnaround if self.paced else self.total.latency
 
     @property
     def faults(self) -> list[str]:
-        """Which limits were passed, in words; none for a line that passed the test."""
+        """The limits that were exceeded, in words; none for a line that passed the test."""
         total, plan = self.total, self.plan
         if not total.sent:
             return ["nothing was sent"]
@@ -197,6 +197,6 @@ class LoopbackResult:
             found.append(f"error rate {total.error_rate:.3g}, allowed {plan.max_error_rate:g}")
         p99_ms = total.latency.summary_ms()["p99"]
         if plan.max_p99_ms is not None and (p99_ms is None or p99_ms > plan.max_p99_ms):
-            got = "no answer at all" if p99_ms is None else f"{p99_ms:g} ms"
+            got = "without an answer" if p99_ms is None else f"{p99_ms:g} ms"
             found.append(f"p99 {got}, allowed {plan.max_p99_ms:g} ms")
         return found

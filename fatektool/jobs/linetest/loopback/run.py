@@ -1,4 +1,4 @@
-"""The loopback stress test: how many exchanges come back as they went, and how fast. Nothing is retried.
+"""The loopback test: how many exchanges are answered as they should be, and how fast. Nothing is retried.
 
 ::
 
@@ -10,14 +10,14 @@
                       those of an earlier one   stale
                       nothing in time           timeout
 
-Each exchange ends as one of these; if none was ok and several were heard, as the one that stands further up.
-What comes before the right answer is no error of this exchange: a late answer is the error of the one it
-belongs to.
+Each exchange is counted as one of these; if none was ok and several were received, as the first of them in
+this list. What is received before the right answer is no error of this exchange: a late answer is the error
+of its own exchange.
 
-An exchange that failed may still be answered later. So no request carries what an unanswered one before it
-carried, unless that one's time was waited out once more.
+An exchange that failed may still be answered later. So no request has the same characters as an unanswered
+one before it, unless that one's time-out was waited for once more.
 
-A connection that breaks costs one exchange, a time-out; if it cannot be made anew, the test ends.
+A broken connection is one exchange with a time-out; if it cannot be made again, the test ends.
 
 Memory does not grow with the length of the test: times are counted in buckets (``latency``).
 """
@@ -50,9 +50,9 @@ def run_loopback(
     """Send, compare, count, until the plan is done, the line is lost, or Ctrl-C.
 
     Args:
-        plc: who is asked.
+        plc: the PLC.
         plan: what to do.
-        on_exchange: is shown the figures so far after each exchange.
+        on_exchange: gets the figures so far after each exchange.
     """
     test = _Test(plc.link, plan)
     try:
@@ -105,19 +105,19 @@ class _Test:
                 on_exchange(result)
 
     def wait_for_the_last(self) -> None:
-        """What is not answered yet may come late, and is no loss then."""
+        """Wait for late answers, which are no lost ones then."""
         if self.result.plan.raw is not None or not self._exchanger.unanswered:
-            return  # of a frame of one's own nothing tells what it answers
+            return  # such a frame does not say which request it answers
         if self.result.heard.late or not self._exchanger.bytes_received:
             self._exchanger.listen_until(self._clock() + min(3 * self.result.timeout_s, _LISTENED_S))
 
     def end(self) -> None:
-        """No exchange comes any more."""
+        """The test is over."""
         self.measure()
         self._exchanger.end()
 
     def measure(self) -> None:
-        """Bring the figures up to date that are not counted by exchange."""
+        """Update the figures that are not counted by exchange."""
         result, exchanger = self.result, self._exchanger
         result.duration_s = self._clock() - self._began
         result.bytes_received = exchanger.bytes_received - self._heard_before

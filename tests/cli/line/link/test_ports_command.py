@@ -38,7 +38,7 @@ def test_ports(fbs: Plant) -> None:
         "  as a slave       Modbus RTU",
         "  RX time-out      5 s (in units of 0.1 s)",
         f"  last result      A, {silence} (transaction 1, station 2)",
-        "  last result      kept for continuous execution alone; else see 'fatektool link result'",
+        "  last result      only kept in continuous execution; otherwise see 'fatektool link result'",
         "  R4148             12 ms",
         "  master station    7",
         "  abnormal answers  3, CRC error (R4059)",
@@ -72,13 +72,13 @@ def test_result(fbs: Plant) -> None:
     assert "outputs      ERR DN" in done.out.splitlines()
     assert fbs.cli("link", "result", "D100", "--check").code == 1
     unsure = fbs.cli("link", "result", "D200", "--check")
-    assert (unsure.code, "without --kind, 0 proves little" in unsure.err) == (0, True)
+    assert (unsure.code, "result 0 without --kind is no proof" in unsure.err) == (0, True)
     assert fbs.cli("link", "result", "D200", "--check", "--kind", "md0").err == ""
     foreign = fbs.cli("link", "result", "D100", "--kind", "mbus").out
-    assert "command      46H, no command of such a transaction" in foreign.splitlines()
+    assert "command      46H, not a command of this kind" in foreign.splitlines()
     unnamed = fbs.cli("link", "result", "D100").out
     assert "md2: this PLC's own ladder program did not give its reply" in unnamed
-    assert "--kind says which of these readings holds" in unnamed
+    assert "--kind selects one of these meanings" in unnamed
 
 
 def test_zeros_are_not_told_as_success(fbs: Plant) -> None:

@@ -11,7 +11,7 @@ from fatektool.cli.shared.lazy_group import LazyGroup, Subcommand, commands
     "table",
     cls=LazyGroup,
     sections=commands(
-        show=Subcommand("line.link.table.show", "Show a table in the PLC, with what is wrong in it."),
+        show=Subcommand("line.link.table.show", "Show a table in the PLC, with its faults."),
         check=Subcommand("line.link.table.show", "Check a table in a file; no PLC."),
         save=Subcommand("line.link.table.show", "Save a table of the PLC to a file."),
         write=Subcommand("line.link.table.write", "Write a table from a file into the PLC."),
@@ -19,7 +19,7 @@ from fatektool.cli.shared.lazy_group import LazyGroup, Subcommand, commands
     epilog="Example: fatektool link table show R5000 --kind md0 -p /dev/ttyUSB0",
 )
 def table_command() -> None:
-    """Communication tables: what the instructions CLINK and M-BUS ask of whom.
+    """Communication tables: the requests of the instructions CLINK and M-BUS.
 
-    SR is the instruction's operand: the register where its table begins, such as R5000 or D100.
+    SR is the operand of the instruction: the register where its table begins, such as R5000 or D100.
     """

@@ -33,22 +33,22 @@ if TYPE_CHECKING:
 
 
 def kind_option(function: F) -> F:
-    """``--kind``, which the words of a table do not tell."""
+    """``--kind``: it cannot be seen from the registers of a table."""
     return click.option(
         "--kind",
         type=KIND,
         required=True,
-        help="CLINK's mode (FUN151), or mbus (FUN150).",
+        help="Mode of CLINK (FUN151), or mbus (FUN150).",
     )(function)
 
 
 @click.command("show", epilog="Example: fatektool link table show R5000 --kind mbus -p /dev/ttyUSB0 --check")
 @click.argument("sr", metavar="SR")
 @kind_option
-@click.option("--check", is_flag=True, help="Exit 1 if something in the table is wrong.")
+@click.option("--check", is_flag=True, help="Exit 1 if the table has faults.")
 @connection_options
 def show_command(sr: str, connection: Connection, voice: Voice, *, kind: str, check: bool) -> int:
-    """Show the table at SR, each row with the result that it would give."""
+    """Show the table at SR, with the result code that each row would give."""
     start = parse_start(sr, "SR")
     with connection.open(voice) as plc:
         found = read_table(plc, start, TableKind(kind))
@@ -65,13 +65,13 @@ def show_command(sr: str, connection: Connection, voice: Voice, *, kind: str, ch
 @click.argument("file", type=PATH)
 @voice_options
 def check_command(file: Path, voice: Voice) -> int:
-    """Check the table in FILE: exit 0 if it holds, 1 if something in it is wrong. Needs no PLC."""
+    """Check the table in FILE: exit 0 if it has no faults, 1 if it has. Needs no PLC."""
     found = load_table(read_bounded(file, MAX_TOML), str(file))
     faults = found.faults()
     host = LinkHost(None, needs_of_table(found))
     voice.show(table_document(found, faults, None, str(file), None, host=host), table_lines(found, faults))
     for need in host.needs:
-        voice.say(f"{need.what} needs OS {need.version} or later of the PLC")
+        voice.say(f"{need.what} needs PLC OS {need.version} or later")
     return 1 if faults else 0
 
 
@@ -84,7 +84,7 @@ def check_command(file: Path, voice: Voice) -> int:
 @click.option("--force", is_flag=True, help="Replace FILE.")
 @connection_options
 def save_command(sr: str, file: Path, connection: Connection, voice: Voice, *, kind: str, force: bool) -> int:
-    """Save the table at SR into FILE, as TOML. What is wrong with it is kept, and said."""
+    """Save the table at SR to FILE, as TOML. Faults are saved as they are, with a warning."""
     start = parse_start(sr, "SR")
     require_place(file, overwrite=force)
     with connection.open(voice) as plc:
