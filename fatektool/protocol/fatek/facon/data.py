@@ -19,7 +19,7 @@ from fatektool.protocol.commands import (
     ReadPage,
     WritePage,
 )
-from fatektool.protocol.fatek.data import DataFields
+from fatektool.protocol.fatek.codec import DataFields
 from fatektool.protocol.fatek.facon.text import TEXT
 from fatektool.protocol.fatek.fields import ROWS, Row, acknowledged, parse_empty
 from fatektool.protocol.plc_errors import refusal

@@ -17,7 +17,7 @@ from fatektool.protocol.commands import (
     ReadBriefStatus,
     ReadDetailedStatus,
 )
-from fatektool.protocol.fatek.data import DataFields
+from fatektool.protocol.fatek.codec import DataFields
 from fatektool.protocol.fatek.fields import ROWS, Row, parse_empty
 from fatektool.protocol.fatek.mseries.bytes import BINARY
 from fatektool.protocol.fatek.mseries.errors import refusal
