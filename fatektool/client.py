@@ -6,6 +6,7 @@ All values are plain: discretes are bool, registers unsigned int, pages 128 byte
 from __future__ import annotations
 
 import time
+from itertools import accumulate
 from typing import TYPE_CHECKING
 
 from fatektool.errors import DataError, LineError, PlcBusy, PlcError, PlcRefused
@@ -30,10 +31,10 @@ from fatektool.protocol.commands import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Collection, Iterable, Sequence
     from contextlib import ExitStack
     from types import TracebackType
-    from typing import Self
+    from typing import Any, Self
 
     from fatektool.exchange.link import Link
     from fatektool.protocol.commands import Request
@@ -273,14 +274,34 @@ class Plc:
         """Read one page of the program (command 4F), 128 bytes."""
         return self.link.ask(ReadPage(page))
 
-    def read_pages(self, pages: Sequence[int], on_page: Callable[[int], None] | None = None) -> list[bytes]:
+    def read_pages(
+        self,
+        pages: Sequence[int],
+        on_page: Callable[[int], None] | None = None,
+        *,
+        separated: Collection[int] = (),
+    ) -> list[bytes]:
         """Read many pages of the program (command 4F), 128 bytes each, none of them that of another number.
 
         Args:
             pages: page numbers.
             on_page: is called with the number of pages read so far.
+            separated: places in ``pages`` before which a brief status (40) is read, so that the answer to the
+                page before cannot pass for theirs.
         """
-        return read_all(self.link, [ReadPage(page) for page in pages], on_page)
+        if not separated:
+            return read_all(self.link, [ReadPage(page) for page in pages], on_page)
+        requests: list[Request[Any]] = []
+        for place, page in enumerate(pages):
+            if place in separated:
+                requests.append(ReadBriefStatus())
+            requests.append(ReadPage(page))
+        counted = [*accumulate(isinstance(request, ReadPage) for request in requests)]
+        told = None if on_page is None else lambda done: on_page(counted[done - 1])
+        answers = read_all(self.link, requests, told)
+        return [
+            answer for request, answer in zip(requests, answers, strict=True) if isinstance(request, ReadPage)
+        ]
 
     def read_pages_until_refused(
         self, pages: Sequence[int], on_page: Callable[[int], None] | None = None

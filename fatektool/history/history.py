@@ -14,7 +14,7 @@ from fatektool.errors import DataError, FatektoolError, UsageError
 from fatektool.files.atomic import write_whole
 from fatektool.history.names import require_name
 from fatektool.history.packing import is_due, pack_loose
-from fatektool.history.recording import RecordResult, compare_with_last, unchanged, write
+from fatektool.history.recording import RecordResult, compare_with_last, last_recorded, unchanged, write
 from fatektool.history.repository import Repository, is_repository
 from fatektool.history.revisions import SHORT, changes_of, resolve
 from fatektool.history.trees import file_in, files
@@ -210,6 +210,17 @@ class History:
             data = repository.read(blob, "blob")
             recorded, _ = next(changes_of(name, repository, commit.revision), (commit, blob))
             return Stored(name, recorded, data, Backup.parse(data, f"{name}@{commit.revision[:SHORT]}"))
+
+    def newest(self, name: str) -> Backup | None:
+        """The newest backup of a PLC; None if there is none, or if it cannot be read.
+
+        Args:
+            name: the PLC.
+        """
+        if not is_repository(self.folder):
+            return None
+        with self._turn, self._open() as repository:
+            return last_recorded(repository, name).old
 
     def before(self, found: Stored) -> Backup | None:
         """The previous backup of the same PLC; None if there is none, or if it cannot be read.

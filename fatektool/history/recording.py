@@ -11,7 +11,7 @@ previous backup cannot be read, that is a warning, and the new one is recorded.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -87,15 +87,26 @@ def compare_with_last(repository: Repository, name: str, backup: Backup) -> Back
     Raises:
         DataError: the newest commit or its tree is damaged.
     """
+    found = last_recorded(repository, name)
+    if found.old is None:
+        return found
+    return replace(found, changes=compare(found.old.program, backup.program))
+
+
+def last_recorded(repository: Repository, name: str) -> BackupComparison:
+    """The last backup that was recorded, compared with nothing.
+
+    Raises:
+        DataError: the newest commit or its tree is damaged.
+    """
     newest = repository.newest()
     blob = file_in(newest.items, name)
     if blob is None:
         return BackupComparison(newest)
     try:
-        old = Backup.parse(repository.read(blob, "blob"), name)
+        return BackupComparison(newest, Backup.parse(repository.read(blob, "blob"), name))
     except DataError as error:  # the new backup is recorded all the same
         return BackupComparison(newest, warnings=(f"the previous backup cannot be read: {error}",))
-    return BackupComparison(newest, old, compare(old.program, backup.program))
 
 
 def unchanged(name: str, found: BackupComparison) -> RecordResult:

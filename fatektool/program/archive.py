@@ -5,9 +5,11 @@ Keys in this order::
     schema created tool source{target station protocol line} plc{status system}
     header{valid family signature byte_order ladder_words code_words capacity_words
            checksum{stored computed valid} sums{settings labels ror}}
-    ladder_words page_count passes sha256 pages[256 hex digits, …]
+    ladder_words page_count passes proof{known_from pages_known pages_read_twice}
+    sha256 pages[256 hex digits, …]
 
-A file from before there were families has ``valid``, ``signature`` and ``ladder_words`` alone in ``header``.
+A file from before there was ``proof`` has none. One from before there were families has ``valid``,
+``signature`` and ``ladder_words`` alone in ``header``.
 ``sha256`` is of all pages' bytes in order. Whatever reads a backup gets it checked to the last byte: a file
 that does not hold is refused, naming what and where, before anything is done with it.
 """
@@ -56,6 +58,41 @@ class Source:
 
 
 @dataclass(frozen=True, slots=True)
+class Proof:
+    """How the pages of a program were proven.
+
+    Attributes:
+        known_from: the file or revision whose pages they were compared with; None if there was none.
+        pages_known: how many were read once, and are those on file.
+        pages_read_twice: how many were read until two readings in a row agreed.
+    """
+
+    known_from: str | None
+    pages_known: int
+    pages_read_twice: int
+
+    def document(self) -> dict[str, Any]:
+        """As a backup file has it."""
+        return {
+            "known_from": self.known_from,
+            "pages_known": self.pages_known,
+            "pages_read_twice": self.pages_read_twice,
+        }
+
+    def text(self, passes: int) -> str:
+        """In words.
+
+        Args:
+            passes: how often the program was read whole.
+        """
+        if not self.pages_known:
+            times = "twice" if passes <= 2 else f"{passes} times"
+            return f"read {times}, identical" if self.pages_read_twice else "read once, not compared"
+        again = f", {self.pages_read_twice} read twice" if self.pages_read_twice else ""
+        return f"{self.pages_known} as in {self.known_from}{again}"
+
+
+@dataclass(frozen=True, slots=True)
 class Backup:
     """A program with where and when it was read.
 
@@ -65,7 +102,8 @@ class Backup:
         tool: name and version of the program that wrote it.
         source: where it was read.
         plc: the status document's ``status`` and ``system``.
-        passes: how often the program was read, 2 or more if it was compared.
+        passes: how often the program was read whole.
+        proof: how its pages were proven; None in a file from before this was kept.
     """
 
     program: Program
@@ -74,6 +112,13 @@ class Backup:
     source: Source
     plc: dict[str, Any]
     passes: int
+    proof: Proof | None = None
+
+    @property
+    def proof_words(self) -> str:
+        """How the pages were proven, in words."""
+        twice = len(self.program.pages) if self.passes > 1 else 0
+        return (self.proof or Proof(None, 0, twice)).text(self.passes)
 
     @property
     def header_document(self) -> dict[str, Any]:
@@ -98,6 +143,7 @@ class Backup:
             "ladder_words": program.ladder_words,
             "page_count": len(program.pages),
             "passes": self.passes,
+            **({} if self.proof is None else {"proof": self.proof.document()}),
             "sha256": program.sha256,
         }
         text = json.dumps(head, indent=1, allow_nan=False).removesuffix("\n}")
@@ -177,6 +223,7 @@ class _Reader:
             source=self.source(self.part(document, "source")),
             plc=self.part(document, "plc"),
             passes=self.number(document, "passes", 1, 1000),
+            proof=self.proof(document, len(program.pages)),
         )
         self.same("sha256", program.sha256, self.text(document, "sha256").lower())
         header = self.part(document, "header")
@@ -206,6 +253,16 @@ class _Reader:
             raise self.fault(f"pages: expected {expected} for {ladder_words} words", len(pages))
         self.same("page_count", len(pages), self.number(document, "page_count", 0, 1 << 32))
         return found
+
+    def proof(self, document: dict[str, Any], count: int) -> Proof | None:
+        if "proof" not in document:
+            return None
+        part = self.part(document, "proof")
+        known_from = part.get("known_from")
+        if known_from is not None and not isinstance(known_from, str):
+            raise self.fault("proof.known_from: expected a text or null", known_from)
+        known = self.number(part, "pages_known", 0, count, "proof.")
+        return Proof(known_from, known, self.number(part, "pages_read_twice", 0, count - known, "proof."))
 
     def source(self, part: dict[str, Any]) -> Source:
         line = part.get("line")

@@ -13,12 +13,13 @@ from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.image_words import warn_of_image
 from fatektool.cli.shared.options import PATH, is_standard
 from fatektool.cli.shared.output import Voice, table
-from fatektool.cli.shared.pairs import together
+from fatektool.cli.shared.pairs import apart, together
 from fatektool.cli.shared.streams import print_bytes
 from fatektool.errors import FatektoolError
 from fatektool.files.atomic import require_place, write_whole
 from fatektool.files.times import stamp, utc
 from fatektool.jobs.programs.backup import read_backup
+from fatektool.jobs.programs.known import first_known, known_in
 from fatektool.program.archive import Backup, save_backup
 from fatektool.protocol.commands import Command
 
@@ -30,6 +31,12 @@ if TYPE_CHECKING:
 @click.argument("file", required=False, type=PATH)
 @click.option("--force", is_flag=True, help="Replace FILE if it exists.")
 @click.option("--single-pass", is_flag=True, help="Read once instead of twice; nothing is compared.")
+@click.option(
+    "--known",
+    type=PATH,
+    metavar="FILE",
+    help="A backup of this PLC: a page that is as in it is read once. Default: FILE that --force replaces.",
+)
 @click.option("--any-header", is_flag=True, help="Keep an image whose header does not hold, marked as such.")
 @click.option("--raw", type=PATH, metavar="FILE.bin", help="Also write the bare pages.")
 @connection_options
@@ -40,13 +47,15 @@ def backup_command(
     file: Path | None,
     force: bool,
     single_pass: bool,
+    known: Path | None,
     any_header: bool,
     raw: Path | None,
 ) -> None:
     """Read the PLC's program into FILE.
 
-    Everything is read twice and compared, the header is checked, and FILE is written whole or not at all.
-    Without FILE the name is made of station and time; - is standard output. The PLC may run.
+    Every page is read twice and compared, the header is checked, and FILE is whole or absent. A page that is
+    as in a backup on file is read once. Without FILE the name is made of station and time; - is standard
+    output. The PLC may run.
     """
     path = file or Path(f"fatek-st{connection.address.station:02}-{stamp(utc())}.json")
     together("force", holds=not is_standard(path) or raw is not None, needs="a file")
@@ -54,8 +63,14 @@ def backup_command(
     for place in (path, raw):
         if place is not None and not is_standard(place):
             require_place(place, overwrite=force)
+    apart("known", "single_pass")
+    former = None if is_standard(path) else path
+    reference = None if connection.entry is None else connection.entry.reference
+    pages = first_known((former, reference), voice.detail) if known is None else known_in(known)
     with connection.open(voice, needs=(Command.READ_PAGE,)) as plc, voice.progress() as bar:
-        result = read_backup(plc, single_pass=single_pass, any_header=any_header, progress=bar.update)
+        result = read_backup(
+            plc, single_pass=single_pass, any_header=any_header, known=pages, progress=bar.update
+        )
         counters = plc.link.counters
     found = result.backup
     voice.detail(f"line: {counters}")
@@ -72,7 +87,7 @@ def backup_command(
     rows = [
         ("saved", path),
         ("program", f"{program.header.text()}, {size}"),
-        ("passes", f"{found.passes}, equal" if found.passes > 1 else "1, not compared"),
+        ("pages", found.proof_words),
         ("sha256", program.sha256),
     ]
     voice.show(saved_document(result, path), table(rows))

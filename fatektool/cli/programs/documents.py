@@ -45,6 +45,7 @@ def backup_summary(backup: Backup) -> dict[str, Any]:
         "ladder_words": backup.program.ladder_words,
         "page_count": len(backup.program.pages),
         "passes": backup.passes,
+        "proof": None if backup.proof is None else backup.proof.document(),
         "sha256": backup.program.sha256,
         "warnings": image_warnings(backup.program),
     }

@@ -29,7 +29,7 @@ def backup_rows(found: Backup, file: str) -> Iterator[tuple[str, object]]:
     if header.checksum is not None:
         yield "checksum", _sum_words(header.checksum)
     yield "ladder size", f"{program.ladder_words} words, {len(program.pages)} pages, {used} not empty"
-    yield "passes", f"{found.passes}, equal" if found.passes > 1 else "1, not compared"
+    yield "pages", found.proof_words
     yield "sha256", program.sha256
 
 

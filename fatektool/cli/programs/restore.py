@@ -22,7 +22,7 @@ from fatektool.jobs.programs.restore import (
     carry_out,
     plan_restore,
 )
-from fatektool.jobs.programs.safety import SafetyBackup
+from fatektool.jobs.programs.safety import SafetyBackup, known_before_restore
 from fatektool.program.archive import LARGEST_FILE, Backup
 from fatektool.program.image import ranges
 from fatektool.program.plc_record import model_words
@@ -69,7 +69,8 @@ def restore_command(
     options = RestoreOptions(stop, run, changed_only, terms.rollback, any_header, single_pass)
     with writing.open(Command.READ_PAGE, Command.WRITE_PAGE) as plc, voice.progress() as bar:
         pace = Pace(plc)
-        plan = plan_restore(plc, backup, options, progress=bar.update)
+        known = known_before_restore(backup.program, file, writing.folder, plc.link.station)
+        plan = plan_restore(plc, backup, options, known=known, progress=bar.update)
         bar.pause()  # while it is shown, stderr is rich's, which older versions say is no terminal
         here = Addressee(
             plc.target, plc.link.station, model_words(plan.present.plc["system"]), running=plan.running

@@ -1,4 +1,4 @@
-"""Back up a PLC's program: read twice, header checked, nothing kept that does not hold."""
+"""Back up a PLC's program: every page proven, header checked, nothing kept that is not valid."""
 
 from __future__ import annotations
 
@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING
 
 from fatektool.callbacks import ignore
 from fatektool.files.times import utc
-from fatektool.jobs.programs.reading import ProgramReading, read_program, read_program_twice
+from fatektool.jobs.programs.proving import read_proven
+from fatektool.jobs.programs.reading import ProgramReading, read_program
 from fatektool.program.archive import Backup, Source
 from fatektool.version import __version__
 
 if TYPE_CHECKING:
     from fatektool.client import Plc
+    from fatektool.jobs.programs.known import KnownPages
     from fatektool.jobs.progress import Progress
 
 
@@ -34,12 +36,13 @@ def read_backup(
     *,
     single_pass: bool = False,
     any_header: bool = False,
+    known: KnownPages | None = None,
     progress: Progress = ignore,
 ) -> BackupResult:
     """``backup``, with the time that it took; arguments and errors are the same."""
     clock = plc.link.transport.clock
     began = clock()
-    found = backup(plc, single_pass=single_pass, any_header=any_header, progress=progress)
+    found = backup(plc, single_pass=single_pass, any_header=any_header, known=known, progress=progress)
     return BackupResult(found, clock() - began)
 
 
@@ -48,14 +51,16 @@ def backup(
     *,
     single_pass: bool = False,
     any_header: bool = False,
+    known: KnownPages | None = None,
     progress: Progress = ignore,
 ) -> Backup:
     """Read a PLC's program into a backup. ``save_backup`` writes it to a file.
 
     Args:
         plc: the PLC; it may run.
-        single_pass: leave the second, comparing pass out.
+        single_pass: read once, and compare with nothing.
         any_header: keep an image whose header does not hold; it is marked.
+        known: what is on file of this PLC: a page that is as on file needs no second reading.
         progress: told of each page.
 
     Raises:
@@ -74,7 +79,7 @@ def backup(
         reading = read_program(plc, progress=progress)
         check(reading)
     else:
-        reading = read_program_twice(plc, progress, after_first=check)
+        reading = read_proven(plc, known, progress, after_first=check)
         check(reading)
     return backup_of(plc, reading)
 
@@ -91,4 +96,5 @@ def backup_of(plc: Plc, reading: ProgramReading) -> Backup:
             "system": reading.status.system.document(),
         },
         passes=reading.passes,
+        proof=reading.proof,
     )

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Final
 
 from fatektool.callbacks import ignore
 from fatektool.errors import DataError, LineError, PlcRefused
+from fatektool.program.archive import Proof
 from fatektool.program.compare import compare
 from fatektool.program.image import Program, is_whole, page_count, ranges
 
@@ -40,12 +41,14 @@ class ProgramReading:
     Attributes:
         status: the answer to 53 of the last pass.
         program: the image.
-        passes: how often it was read.
+        passes: how often it was read whole.
+        proof: how its pages were proven.
     """
 
     status: DetailedStatus
     program: Program
     passes: int
+    proof: Proof
 
 
 def read_program(
@@ -75,7 +78,9 @@ def read_program(
             "the PLC's detailed status (53) tells a ladder size of 0 words: there is nothing to read",
             hint="check the model with 'fatektool status'",
         )
-    return ProgramReading(status, Program(words, tuple(read_all_pages(plc, words, phase, progress))), 1)
+    return ProgramReading(
+        status, Program(words, tuple(read_all_pages(plc, words, phase, progress))), 1, Proof(None, 0, 0)
+    )
 
 
 def read_all_pages(
@@ -138,17 +143,18 @@ def read_program_twice(
         LineError: no two passes over a bad line agree.
         PlcRefused: the PLC does not give its program away.
     """
-    before = _trouble(plc)
+    before = line_trouble(plc)
     last = read_program(plc, phase, progress)
     if after_first is not None:
         after_first(last)
     for number in range(2, MOST_PASSES + 1):
-        between = _trouble(plc)
+        between = line_trouble(plc)
         again = read_program(plc, f"{phase}, pass {number}", progress)
         difference = _difference(last, again)
         if difference is None:
-            return ProgramReading(again.status, again.program, number)
-        if _trouble(plc) == before:
+            proof = Proof(None, 0, len(again.program.pages))
+            return ProgramReading(again.status, again.program, number, proof)
+        if line_trouble(plc) == before:
             raise DataError(
                 f"two passes over a clean line read different programs: {difference}",
                 hint="is somebody loading a program, or was the PLC exchanged? run it again in peace",
@@ -162,16 +168,38 @@ def read_program_twice(
 
 def _difference(a: ProgramReading, b: ProgramReading) -> str | None:
     """What two passes differ in, in words."""
-    if a.status.system != b.status.system:
-        before, after = a.status.system.document(), b.status.system.document()
-        changed = ", ".join(
-            f"{name} {before[name]}, then {after[name]}" for name in before if before[name] != after[name]
-        )
-        return f"the detailed status (53) changed: {changed}"
+    changed = _status_difference(a.status, b.status)
+    if changed is not None:
+        return changed
     found = compare(a.program, b.program)
     return None if found.same else f"page {ranges(found.page_numbers)}"
 
 
-def _trouble(plc: Plc) -> int:
+def _status_difference(a: DetailedStatus, b: DetailedStatus) -> str | None:
+    """What two answers to 53 differ in, in words."""
+    if a.system == b.system:
+        return None
+    before, after = a.system.document(), b.system.document()
+    changed = ", ".join(
+        f"{name} {before[name]}, then {after[name]}" for name in before if before[name] != after[name]
+    )
+    return f"the detailed status (53) changed: {changed}"
+
+
+def require_same_status(before: DetailedStatus, now: DetailedStatus) -> None:
+    """Refuse a PLC whose size or model changed while its program was read.
+
+    Raises:
+        DataError: it did; says what.
+    """
+    changed = _status_difference(before, now)
+    if changed is not None:
+        raise DataError(
+            f"the PLC changed while its program was read: {changed}",
+            hint="was the PLC exchanged? run it again",
+        )
+
+
+def line_trouble(plc: Plc) -> int:
     """The line's errors so far; the same twice means a clean line in between."""
     return plc.link.counters.trouble + plc.link.unsolicited

@@ -24,9 +24,10 @@ from fatektool.callbacks import ignore
 from fatektool.errors import LineError, PlcError, PlcNotReady, UsageError
 from fatektool.jobs.programs.backup import backup_of
 from fatektool.jobs.programs.fit import model_warning, require_kin, require_size
-from fatektool.jobs.programs.reading import read_program, read_program_twice
+from fatektool.jobs.programs.proving import read_proven
+from fatektool.jobs.programs.reading import read_program
 from fatektool.jobs.programs.rewrite import Rewrite
-from fatektool.jobs.programs.safety import SafetyBackup
+from fatektool.jobs.programs.safety import SafetyBackup, known_before_restore
 from fatektool.jobs.write_back.plan import WritePlan
 from fatektool.jobs.write_back.record import NO_MARK, Mark
 from fatektool.jobs.write_back.write import Agree, agreed, write_back
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fatektool.client import Plc
+    from fatektool.jobs.programs.known import KnownPages
     from fatektool.jobs.progress import Progress
     from fatektool.program.archive import Backup
     from fatektool.program.image import Program
@@ -110,9 +112,21 @@ class RestoreResult:
 
 
 def plan_restore(
-    plc: Plc, backup: Backup, options: RestoreOptions, *, progress: Progress = ignore
+    plc: Plc,
+    backup: Backup,
+    options: RestoreOptions,
+    *,
+    known: KnownPages | None = None,
+    progress: Progress = ignore,
 ) -> RestorePlan:
     """Check that a backup fits this PLC and find what differs. Changes nothing.
+
+    Args:
+        plc: the PLC.
+        backup: what to restore.
+        options: what the restore may do.
+        known: what is on file of the program now in the PLC; a page that is as on file is read once.
+        progress: told of each page.
 
     Raises:
         DataError: another ladder size; a header that does not hold.
@@ -137,7 +151,7 @@ def plan_restore(
             hint="make the machine safe, then add --stop",
         )
     reading = (
-        read_program(plc, progress=progress) if options.single_pass else read_program_twice(plc, progress)
+        read_program(plc, progress=progress) if options.single_pass else read_proven(plc, known, progress)
     )
     present = reading.program
     require_size(backup.program, present.ladder_words)  # it may be another PLC by now
@@ -271,7 +285,8 @@ def restore(
         PlcError: see ``plan_restore`` and ``carry_out``.
         LineError: see ``plan_restore`` and ``carry_out``.
     """
-    plan = plan_restore(plc, backup, options, progress=progress)
+    known = known_before_restore(backup.program, file, safety_folder, plc.link.station)
+    plan = plan_restore(plc, backup, options, known=known, progress=progress)
 
     def agree(kept: Path | None) -> None:
         if plan.pages and not confirm(plan, kept):

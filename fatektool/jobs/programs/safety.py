@@ -12,10 +12,12 @@ from itertools import zip_longest
 from typing import TYPE_CHECKING, ClassVar, Final
 
 from fatektool.errors import FatektoolError
+from fatektool.jobs.programs.known import KnownPages
 from fatektool.jobs.write_back.safety_copy import name_of, save_copy, start_of
 from fatektool.program.archive import load_backup
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
     from fatektool.program.archive import Backup
@@ -84,16 +86,7 @@ def find_way_back(present: Program, wanted: Program, station: int, file: Path, f
         file: where ``wanted`` came from.
         folder: where safety backups are.
     """
-    start, pattern = start_of(_stem(file)), name_of("", station)
-    try:
-        names = [path for path in folder.iterdir() if path.name.startswith(start) and pattern in path.name]
-    except OSError:
-        return None
-    for path in sorted(names, reverse=True)[:_MOST_LOOKED_AT]:
-        try:
-            old = load_backup(path).program
-        except FatektoolError:
-            continue  # a damaged file cannot be restored, and is no reason to stop
+    for path, old in _safety_backups(station, file, folder):
         if old == present or old.ladder_words != present.ladder_words:
             continue
         if len(old.pages) != len(present.pages):
@@ -102,6 +95,33 @@ def find_way_back(present: Program, wanted: Program, station: int, file: Path, f
         if all(page in {before, after} for page, before, after in pages):
             return path
     return None
+
+
+def known_before_restore(wanted: Program, file: Path, folder: Path | None, station: int) -> KnownPages:
+    """What is on file of the program that a PLC may have before a restore: FILE, the newest safety backup.
+
+    Args:
+        wanted: the program that is to be restored.
+        file: where it came from.
+        folder: where safety backups are; None for none.
+        station: the PLC's station.
+    """
+    newest = next(_safety_backups(station, file, folder), None) if folder is not None else None
+    return KnownPages((wanted,) if newest is None else (wanted, newest[1]), str(file))
+
+
+def _safety_backups(station: int, file: Path, folder: Path) -> Iterator[tuple[Path, Program]]:
+    """The safety backups of restores of this file, the newest first; damaged ones are left out."""
+    start, pattern = start_of(_stem(file)), name_of("", station)
+    try:
+        names = [path for path in folder.iterdir() if path.name.startswith(start) and pattern in path.name]
+    except OSError:
+        return
+    for path in sorted(names, reverse=True)[:_MOST_LOOKED_AT]:
+        try:
+            yield path, load_backup(path).program
+        except FatektoolError:
+            continue  # a damaged file cannot be restored, and is no reason to stop
 
 
 def _stem(file: Path) -> str:

@@ -82,7 +82,7 @@ def test_what_no_command_should_do(
     def fail(*_: object, **__: object) -> None:
         raise raised
 
-    monkeypatch.setattr("fatektool.jobs.programs.backup.read_program_twice", fail)
+    monkeypatch.setattr("fatektool.jobs.programs.backup.read_proven", fail)
     done = cli("backup", "x.json", "-p", press.target, *(["--json"] if as_json else []))
     assert done.code == code
     assert one_line(done.err).startswith(f"fatektool: {message}")
@@ -95,7 +95,7 @@ def test_a_fault_can_be_looked_into(press: Press, cli: Cli, monkeypatch: pytest.
     def fail(*_: object, **__: object) -> None:
         raise ZeroDivisionError
 
-    monkeypatch.setattr("fatektool.jobs.programs.backup.read_program_twice", fail)
+    monkeypatch.setattr("fatektool.jobs.programs.backup.read_proven", fail)
     monkeypatch.setenv("FATEKTOOL_TRACEBACK", "1")
     with pytest.raises(ZeroDivisionError):
         cli("backup", "x.json", "-p", press.target)

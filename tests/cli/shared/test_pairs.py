@@ -27,7 +27,7 @@ LINE = (
 )
 VOICE = "--json --quiet --verbose"
 FREE = {
-    "backup": "--single-pass --any-header --raw",
+    "backup": "--single-pass --known --any-header --raw",
     "verify": "--comments --report --force",
     "restore": "--stop --run --changed-only --dry-run --single-pass --any-header --yes",
     "inspect": "--raw",
@@ -124,6 +124,7 @@ APART = [
 
 ALONE = [
     ("backup - -p sim:", "--force"),
+    ("backup x.json -p sim: --single-pass", "--known old.json"),
     ("inspect old.json", "--force"),
     ("history export x - --history h", "--force"),
     ("decode x.ndjson", "--as request"),

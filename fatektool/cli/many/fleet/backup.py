@@ -17,6 +17,7 @@ from fatektool.cli.shared.options import PATH
 from fatektool.cli.shared.places import require_folder_for
 from fatektool.errors import FatektoolError, UsageError
 from fatektool.jobs.programs.backup import read_backup
+from fatektool.jobs.programs.known import KnownPages, first_known
 from fatektool.jobs.programs.safekeeping import replace_backup, require_ladder
 from fatektool.protocol.commands import Command
 
@@ -118,8 +119,11 @@ def _work(
 
     def work(entry: PlcEntry, turn: Turn[JobResult]) -> JobResult:
         own = voice.of(entry.name)
+        known = None if single_pass else _known(entry, folder, history, own)
         with opened(entry, turn, voice, Command.READ_PAGE) as plc:
-            found = read_backup(plc, single_pass=single_pass, any_header=any_header, progress=turn.progress)
+            found = read_backup(
+                plc, single_pass=single_pass, any_header=any_header, known=known, progress=turn.progress
+            )
         program = found.backup.program
         require_ladder(program)
         warn_of_image(program, own)
@@ -139,6 +143,19 @@ def _work(
         return JobResult(0, document, words, path or kept_in, changed)
 
     return work
+
+
+def _known(entry: PlcEntry, folder: Path | None, history: History | None, voice: Voice) -> KnownPages | None:
+    """What is on file of a PLC: the history's newest, the backup that is replaced, or the reference."""
+    try:
+        newest = None if history is None else history.newest(entry.name)
+    except FatektoolError as error:
+        voice.detail(error.message)  # it is said again when the backup is recorded
+        newest = None
+    if newest is not None:
+        return KnownPages((newest.program,), f"{entry.name}@HEAD")
+    former = None if folder is None else folder / f"{entry.name}.json"
+    return first_known((former, entry.reference), voice.detail)
 
 
 def _record(history: History, name: str, backup: Backup, voice: Voice) -> bool | None:

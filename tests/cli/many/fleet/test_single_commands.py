@@ -21,7 +21,7 @@ TIMES = {"time", "created", "duration_s", "file"}
 COMMANDS = {
     "status": ("fleet status", "status"),
     "status --brief": ("fleet status --brief", "status --brief"),
-    "backup": ("fleet backup --dir backups", "backup own.json"),
+    "backup": ("fleet backup --dir backups", "backup own.json --known old.json"),
     "verify, the same": ("fleet verify", "verify old.json"),
     "verify, another": ("fleet verify", "verify new.json"),
     "snapshot": ("fleet snapshot --dir snapshots", "snapshot --spec press.toml"),
