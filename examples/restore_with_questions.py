@@ -17,14 +17,14 @@ if TYPE_CHECKING:
     from fatektool.jobs.programs.restore import RestorePlan
 
 
-def agree(plan: RestorePlan, old_program: Path | None) -> bool:
+def agree(plan: RestorePlan, copy: Path | None) -> bool:
     """Ask whatever must be asked on your machine; this one agrees to small changes alone."""
-    print(f"{len(plan.pages)} pages to write; the old program is saved in {old_program}")
+    print(f"{len(plan.pages)} pages to write; previous program saved in {copy}")
     return len(plan.comparison.pages) < 100
 
 
 def main() -> int:
-    """Restore, changed pages only, and put the old program back if that fails."""
+    """Restore, changed pages only, and write the previous program back if that fails."""
     target, file = sys.argv[1], Path(sys.argv[2])
     options = RestoreOptions(stop=True, run=True, changed_only=True, rollback=True)
     with fatektool.connect(target) as plc:

@@ -61,9 +61,7 @@ def test_a_write_whose_read_back_is_refused_is_written_and_not_proven() -> None:
     (left,) = write_elements(client(peer), [(R5, 7)])
     assert peer.device.read_words("R", 5, 1) == [7]
     told = left.words(str)
-    assert told.startswith(
-        "written and acknowledged, but not proven: it cannot be read back: the PLC refused"
-    )
+    assert told.startswith("written and acknowledged, but it cannot be read back: the PLC refused")
     assert left.acknowledged
 
 

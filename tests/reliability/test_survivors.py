@@ -13,7 +13,7 @@ from fatektool.files.atomic import file_error, read_bounded, require_folder, req
 from fatektool.jobs.programs.backup import backup
 from fatektool.jobs.programs.reading import MOST_PASSES
 from fatektool.jobs.programs.restore import RestoreOptions, RestoreResult, restore
-from fatektool.jobs.programs.safety import find_way_back, save_safety_backup
+from fatektool.jobs.programs.safety import find_safety_backup, save_safety_backup
 from fatektool.program.archive import Backup, load_backup, save_backup
 from fatektool.program.headers.families import read_header
 from fatektool.program.image import Program
@@ -191,7 +191,7 @@ def test_the_way_back_is_found_behind_newer_files_that_are_none(tmp_path: Path) 
     save_backup(backup_of(program(500)), tmp_path / "press.safety-st01-20991230T000000Z.json")
     half = Program(400, (*NEW.pages[:3], *OLD.pages[3:]))
     save_backup(backup_of(half), tmp_path / "press.safety-st01-20991229T000000Z.json")
-    found = find_way_back(half, NEW, 1, tmp_path / "press.json", tmp_path)
+    found = find_safety_backup(half, NEW, 1, tmp_path / "press.json", tmp_path)
     assert found == mine
 
 

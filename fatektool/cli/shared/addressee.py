@@ -177,7 +177,7 @@ def agree(
         unchanged: what is said if the answer is no.
 
     Raises:
-        UsageError: not agreed to, or there is nobody to ask.
+        UsageError: the user does not agree, or there is nobody to ask.
         KeyboardInterrupt: Ctrl-C at the question; has ``unchanged``.
     """
     voice.require_answer(yes=yes)

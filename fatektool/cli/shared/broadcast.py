@@ -1,4 +1,4 @@
-"""``-s 0 --broadcast``: a write to every PLC on the line. None of them answers, so nothing is proven."""
+"""``-s 0 --broadcast``: a write to every PLC on the line. PLCs do not reply to it."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def broadcast_option(function: F) -> F:
     return click.option(
         "--broadcast",
         is_flag=True,
-        help="With -s 0: to every PLC on the line. None answers: sent, not proven.",
+        help="With -s 0: to every PLC on the line. They do not reply, so success cannot be checked.",
     )(function)
 
 
@@ -45,26 +45,27 @@ def means_all(connection: Connection, *, broadcast: bool) -> bool:
 def send_to_all(
     connection: Connection, voice: Voice, command: str, requests: Sequence[Request[None]], *, yes: bool
 ) -> None:
-    """Ask, send, and say that nothing is proven.
+    """Ask, send, and say that success cannot be checked.
 
     Args:
         connection: the line.
-        voice: asks and tells.
+        voice: asks and reports.
         command: what is sent, in a word or two.
         requests: writes.
         yes: do not ask.
 
     Raises:
-        UsageError: not agreed to, or the line is read-only; nothing was sent.
+        UsageError: the user does not agree, or the line is read-only; nothing was sent.
         LineError: the line is not there or failed; some of them may be sent.
     """
     any_station = connection.address.changed(station=1)  # a line is opened with one; which does not matter
     with connection._replace(address=any_station).open(voice, writes=True) as plc:
-        question = f"'{command}' goes to every PLC on {connection.address.target}, and none answers. Send?"
+        question = f"Send '{command}' to every PLC on {connection.address.target}?"
         if not voice.confirm(question, yes=yes):
-            raise UsageError("not agreed to: nothing was sent")
+            raise UsageError("Aborted. Nothing was sent.")
         for request in requests:
             plc.broadcast(request)
         document = broadcast_document(plc, command, len(requests))
     count = f"{len(requests)} request{'' if len(requests) == 1 else 's'}"
-    voice.show(document, [f"'{command}': {count} sent to every PLC on the line, not proven: none answers"])
+    sent = f"'{command}': {count} sent to every PLC on the line"
+    voice.show(document, [sent, "PLCs do not reply to broadcasts, so success cannot be checked"])

@@ -24,7 +24,7 @@ _META = "fatektool.force"
 
 
 def force_option(function: F) -> F:
-    """``--force`` for a command whose files are those of other shared options; ``replaces`` tells."""
+    """``--force`` for a command whose files are those of other shared options; ``replaces`` has it."""
 
     def keep(context: click.Context, _: click.Parameter, value: bool) -> None:  # click's call
         context.meta[_META] = value
@@ -70,7 +70,7 @@ def safety_folder(named: Path | None, file: Path | None, voice: Voice, *, dry_ru
     Args:
         named: ``--safety-dir``; made if it is missing, but for a dry run, which saves nothing.
         file: what is written into the PLC; for a pipe or standard input it is the working folder.
-        voice: is told of a folder that was made.
+        voice: reports a folder that was made.
         dry_run: nothing will be saved.
 
     Raises:

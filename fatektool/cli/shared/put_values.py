@@ -54,7 +54,7 @@ def put_values(plc: Plc, plan: ValuesPlan, offer: Offer, name: str) -> Written:
         name: what the safety snapshot's name begins with.
 
     Raises:
-        UsageError: not agreed to.
+        UsageError: the user does not agree.
         RestoreIncomplete: some values are written.
         FatektoolError: as ``write_back`` says; nothing was changed.
     """

@@ -217,7 +217,7 @@ class Offer:
             copy: where the safety copy is.
 
         Raises:
-            UsageError: not agreed to.
+            UsageError: the user does not agree.
         """
         saved = f"{_NOT_SAVED}." if copy is None else f"saved in {copy}"
         lines = [*self.lines, f"Previous {self.copied} {saved}"] if self.copied else self.lines

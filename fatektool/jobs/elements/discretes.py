@@ -108,8 +108,7 @@ def _read(
         errors |= {str(element): error for element, error in held.errors.items()}
     if control is not None:
         errors = {
-            name: f"acknowledged, but not proven: it cannot be read back: {error}"
-            for name, error in errors.items()
+            name: f"acknowledged, but it cannot be read back: {error}" for name, error in errors.items()
         }
     missing = on.not_asked if state_alone else on.not_asked | held.not_asked
     states = {

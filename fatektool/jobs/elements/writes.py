@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class NotTaken:
-    """A write that did not take, or that is not proven.
+    """A write that did not take, or that could not be checked.
 
     Attributes:
         element: which.
@@ -49,13 +49,13 @@ class NotTaken:
 
         Args:
             shown: a raw value as the user reads it.
-            place: the element, where it is told under another name.
+            place: the element, where it is shown under another name.
         """
         wanted = shown(self.wanted) + (f" in {place}" if place else "")
         if self.got is not None:
             return f"did not take: expected {wanted}, it holds {shown(self.got)}: {self.reason}"
         if self.acknowledged:  # the refusal is of the read-back, which nobody asked for
-            return f"written and acknowledged, but not proven: it cannot be read back: {self.reason}"
+            return f"written and acknowledged, but it cannot be read back: {self.reason}"
         return f"did not take: expected {wanted}: {self.reason}"
 
 

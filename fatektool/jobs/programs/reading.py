@@ -1,6 +1,6 @@
 """Reading a program whole, and twice: the part that backup and restore share.
 
-Two passes must agree. Where they do not, the line's behaviour tells why:
+Two passes must agree. Where they do not, the line's behaviour shows why:
 
 - the line was clean in both: it is the PLC that gave two answers, somebody is loading a program, or it is not
   the same PLC any more. That is said, and nothing is kept.
@@ -62,20 +62,20 @@ def read_program(
     Args:
         plc: the PLC.
         phase: what the progress calls it.
-        progress: told of each page.
+        progress: called for each page.
         status: the answer to 53, if it was read just now.
 
     Raises:
         LineError: a page found no answer.
         PlcRefused: the PLC does not give its program away.
-        DataError: the PLC tells of no ladder memory.
+        DataError: the PLC's ladder size is 0.
     """
     if status is None:
         status = plc.detailed_status()
     words = status.system.ladder_words
     if not words:
         raise DataError(
-            "the PLC's detailed status (53) tells a ladder size of 0 words: there is nothing to read",
+            "the PLC's detailed status (53) has a ladder size of 0 words: there is nothing to read",
             hint="check the model with 'fatektool status'",
         )
     return ProgramReading(
@@ -92,7 +92,7 @@ def read_all_pages(
         plc: the PLC.
         words: the ladder size that it says it has.
         phase: what the progress calls it.
-        progress: told of each page.
+        progress: called for each page.
         count: read no more than this many; None for all that the ladder size asks for.
 
     Raises:
@@ -134,7 +134,7 @@ def read_program_twice(
 
     Args:
         plc: the PLC.
-        progress: told of each page.
+        progress: called for each page.
         phase: what the progress calls it.
         after_first: looks at the first pass, and may raise before the second is read.
 

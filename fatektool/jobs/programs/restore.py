@@ -200,14 +200,14 @@ def carry_out(
         plc: the PLC.
         plan: of this PLC, just now.
         safety: saves the previous program; None for no safety backup.
-        agree: is told where that is, and raises an error if it is not agreed to; not called if there is
+        agree: gets where that is, and raises an error if the user does not agree; not called if there is
             nothing to do.
-        progress: told of each page.
+        progress: called for each page.
         mark: takes note that pages are being written.
 
     Raises:
         RestoreIncomplete: the PLC's program is neither the previous nor the new one.
-        UsageError: the safety backup cannot be written, or it is not agreed to; nothing was written.
+        UsageError: the safety backup cannot be written, or the user does not agree; nothing was written.
         DataError: this is not the PLC that the plan was made of; nothing was written.
         PlcError: nothing was changed; or all was, and RUN is refused; or it was rolled back.
         LineError: the same, for want of an answer.
@@ -276,7 +276,7 @@ def restore(
             called if no page is to be written.
         options: what the restore may do.
         safety_folder: where the safety backup goes; None for none.
-        progress: told of each page.
+        progress: called for each page.
 
     Raises:
         UsageError: ``confirm`` said no.

@@ -47,7 +47,7 @@ class SafetyBackup:
 
     def find(self, folder: Path) -> Path | None:
         """The safety backup of an unfinished restore of the same file, if the PLC holds such a half."""
-        return find_way_back(
+        return find_safety_backup(
             self.present.program, self.wanted, self.present.source.station, self.file, folder
         )
 
@@ -76,7 +76,9 @@ def save_safety_backup(backup: Backup, file: Path, folder: Path) -> Path:
     return save_copy(folder, _stem(file), backup.source.station, backup.created, backup.to_bytes())
 
 
-def find_way_back(present: Program, wanted: Program, station: int, file: Path, folder: Path) -> Path | None:
+def find_safety_backup(
+    present: Program, wanted: Program, station: int, file: Path, folder: Path
+) -> Path | None:
     """The safety backup of an unfinished restore of the same file, if the PLC holds such a half.
 
     Args:

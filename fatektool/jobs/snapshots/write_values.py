@@ -131,10 +131,10 @@ def write_values(
         plc: the PLC.
         plan: of this PLC, just now.
         copy: the safety snapshot; None for none.
-        agree: is told where that is, and raises an error if it is not agreed to.
+        agree: gets where that is, and raises an error if the user does not agree.
         rollback: write the previous values back if writing or reading back fails for good.
         mark: takes note that a write is under way.
-        progress: told how far it is.
+        progress: called as it goes on.
 
     Raises:
         RestoreIncomplete: some values are written.

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from fatektool.jobs.write_back.plan import WritePlan
 
 Agree = Callable[[Path | None], object]
-"""Is told where the safety copy is, shows the plan, and raises an error if it is not agreed to."""
+"""Gets where the safety copy is, shows the plan, and raises an error if the user does not agree."""
 
 
 def agreed(_: Path | None) -> None:
@@ -51,16 +51,16 @@ def write_back(
     Args:
         plc: the PLC.
         plan: of this PLC, just now.
-        agree: is told where the safety copy is, shows the plan, and raises an error if it is not agreed to.
+        agree: gets where the safety copy is, shows the plan, and raises an error if the user does not agree.
         mark: takes note that a write is under way.
-        progress: told how far it is.
+        progress: called as it goes on.
 
     Returns:
         Where the safety copy is; None if nothing is saved.
 
     Raises:
         RestoreIncomplete: part of it is written; ``states`` and ``details`` say what the PLC holds.
-        UsageError: the copy cannot be written, or it is not agreed to; nothing was written.
+        UsageError: the copy cannot be written, or the user does not agree; nothing was written.
         DataError: the disk is full, or this is not the PLC of the plan; nothing was written.
         PlcError: the PLC refuses and nothing was changed, or it was rolled back.
         LineError: no answer and nothing was written, or it was rolled back.

@@ -209,6 +209,9 @@ def incomplete(bench: Bench, done: Done) -> str:
     status = bench.cli("status", "-p", bench.target, "--json").document("status")
     known = [status["unfinished_restore"]] if bench.name == "restore" else status["unfinished_writes"]
     assert [record[bench.writer.key] for record in known] == [str(copy)]
+    checked = bench.cli("check", "--expect", "any", "-p", bench.target)
+    assert checked.code == (2 if bench.name == "restore" else 1)
+    assert f"{bench.name} UNFINISHED since 20" in checked.out
     return str(details["command"])
 
 

@@ -87,7 +87,7 @@ def test_a_plc_without_ladder_memory() -> None:
         return framed(answer[1:6] + answer[6:14] + b"0000" + answer[18:-3])
 
     bench.tap.forge = forge
-    with pytest.raises(DataError, match=r"tells a ladder size of 0 words.*fatektool status"):
+    with pytest.raises(DataError, match=r"has a ladder size of 0 words.*fatektool status"):
         backup(bench.plc)
 
 

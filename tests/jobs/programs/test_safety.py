@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from fatektool.jobs.programs.safety import find_way_back, save_safety_backup
+from fatektool.jobs.programs.safety import find_safety_backup, save_safety_backup
 from fatektool.program.archive import load_backup, save_backup
 from fatektool.program.image import Program
 from tests.program.samples import backup, program
@@ -25,7 +25,7 @@ def half(*new: int) -> Program:
 
 def find(place: Path, present: Program, **others: Any) -> Path | None:
     known: dict[str, Any] = {"wanted": NEW, "station": 1, "file": place / "press.json", "folder": place}
-    return find_way_back(present, **known | others)
+    return find_safety_backup(present, **known | others)
 
 
 def test_the_way_back_is_found_among_foreign_and_damaged_files(tmp_path: Path) -> None:
