@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from hypothesis import HealthCheck, is_hypothesis_test, settings
 
+from tests.compiling import import_from_the_end, keep_compiled
 from tests.night import AT_NIGHT
 
 if TYPE_CHECKING:
@@ -46,12 +47,19 @@ def _looks_for_new_cases(config: pytest.Config) -> bool:
 
 @pytest.hookimpl(tryfirst=True)  # before Hypothesis reads its seed, and before a test module is imported
 def pytest_configure(config: pytest.Config) -> None:
+    if not hasattr(config, "workerinput"):
+        keep_compiled()
     random = _looks_for_new_cases(config)
     if random:
         os.environ[AT_NIGHT] = "1"
     settings.load_profile("random" if random else "same")
     if random and config.option.hypothesis_seed is None:
         config.option.hypothesis_seed = os.environ.setdefault(_SEED, str(secrets.randbelow(1 << 32)))
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection(session: pytest.Session) -> None:
+    import_from_the_end(session.config)
 
 
 def pytest_report_header(config: pytest.Config) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -65,14 +66,27 @@ def folder_of(module: str) -> str:
     return parts[1] if len(parts) > 1 else "__init__"
 
 
-def trees() -> Iterator[tuple[str, ast.Module]]:
+def paths() -> Iterator[tuple[str, Path]]:
     for path in sorted(ROOT.rglob("*.py")):
         parts = path.relative_to(ROOT.parent).with_suffix("").parts
-        name = ".".join(parts[:-1] if parts[-1] == "__init__" and len(parts) > 2 else parts)
-        yield name, ast.parse(path.read_text(encoding="utf-8"), str(path))
+        yield ".".join(parts[:-1] if parts[-1] == "__init__" and len(parts) > 2 else parts), path
 
 
-def imports() -> Iterator[Import]:
+@cache
+def trees() -> list[tuple[str, ast.Module]]:
+    return [(name, ast.parse(path.read_text(encoding="utf-8"), str(path))) for name, path in paths()]
+
+
+@cache
+def imports() -> list[Import]:
+    return list(all_imports())
+
+
+def ours() -> list[Import]:
+    return [found for found in imports() if found.name.startswith("fatektool.")]
+
+
+def all_imports() -> Iterator[Import]:
     for module, tree in trees():
         for node in ast.walk(tree):
             if isinstance(node, ast.Import):
@@ -85,25 +99,22 @@ def imports() -> Iterator[Import]:
                     yield from (Import(module, f"fatektool.{alias.name}") for alias in node.names)
 
 
-IMPORTS = list(imports())
-OURS = [found for found in IMPORTS if found.name.startswith("fatektool.")]
-
-
 def test_every_folder_has_a_rank() -> None:
     assert {folder_of(module) for module, _ in trees()} <= RANKS.keys()
-    assert len(OURS) > 100
+    assert len(ours()) > 100
 
 
-@pytest.mark.parametrize("folder", sorted({found.folder for found in OURS}))
-def test_imports_point_down(folder: str) -> None:
-    for found in OURS:
-        other = folder_of(found.name)
-        if found.folder != folder or other in {folder, "version"}:
-            continue
-        assert RANKS[other] < RANKS[folder], f"{found.by} imports {found.name}"
+def test_imports_point_down() -> None:
+    up = [
+        f"{found.by} imports {found.name}"
+        for found in ours()
+        if (other := folder_of(found.name)) not in {found.folder, "version"}
+        and RANKS[other] >= RANKS[found.folder]
+    ]
+    assert not up
 
 
-MODULES = {module for module, _ in trees()}
+MODULES = {module for module, _ in paths()}
 
 IN_A_CIRCLE: set[str] = {
     "fatektool.protocol.commands",
@@ -123,6 +134,7 @@ def module_of(name: str) -> str:
     return name
 
 
+@cache
 def graph() -> dict[str, set[str]]:
     """Each module and those it imports, under TYPE_CHECKING and within functions too."""
     found: dict[str, set[str]] = {module: set() for module in MODULES}
@@ -173,7 +185,7 @@ def test_no_command_imports_a_command() -> None:
 
 
 def test_the_simulator_shares_no_code_with_the_client() -> None:
-    for found in OURS:
+    for found in ours():
         if folder_of(found.name) == "simulator":
             assert found.folder in TO_THE_SIMULATOR, f"{found.by} imports {found.name}"
         if found.folder == "simulator":
@@ -183,7 +195,7 @@ def test_the_simulator_shares_no_code_with_the_client() -> None:
 
 
 def test_only_the_command_line_prints() -> None:
-    for found in IMPORTS:
+    for found in imports():
         if found.name.partition(".")[0] in PRINTERS:
             assert found.folder == "cli", f"{found.by} imports {found.name}"
     for module, tree in trees():
@@ -195,7 +207,7 @@ def test_only_the_command_line_prints() -> None:
 def test_the_rooms_below_the_lines_do_no_input_or_output() -> None:
     """Protocol has no I/O, no clock, no threads; program touches files in one place."""
     forbidden = {"socket", "serial", "threading", "asyncio", "subprocess", "select", "time", "selectors"}
-    for found in IMPORTS:
+    for found in imports():
         if found.folder in {"protocol", "program", "ladder", "project"}:
             assert found.name.partition(".")[0] not in forbidden, f"{found.by} imports {found.name}"
         if found.name.partition(".")[0] in {"os", "pathlib", "tempfile"} and found.folder in {

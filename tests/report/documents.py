@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 from random import Random
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fatektool.cli.programs.documents import program_differences
 from fatektool.program.image import Program
@@ -16,6 +17,9 @@ from fatektool.report.series import Place, series_report
 from fatektool.report.snapshot import snapshot_report
 from tests.cli.running import check
 from tests.program.samples import changed, program
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 TIME = "2026-11-22T03:15:00Z"
 TIMES_MS = {"min": 18.2, "p50": 21.25, "p90": 24.5, "p99": 48.0, "p999": 93.5, "max": 120.75, "mean": 22.9}
@@ -175,19 +179,24 @@ def place(schema: str = "fatektool.watch/1", target: str = "/dev/ttyUSB0") -> Pl
     return Place(target, 1, "facon", schema, TIME)
 
 
-def reports() -> dict[str, str]:
-    """Every kind of report, by name."""
-    small, large = program(400), program(13_184)
-    many = Program(13_184, (large.pages[0], *program(13_184, seed=2).pages[1:]))
-    return {
-        "loopback": loopback_report(loopback()),
-        "dead line": loopback_report(dead_line()),
-        "verify": verify_report(verified(large, changed(large, 5, 6, 40, 206)), large),
-        "verify same": verify_report(verified(small, small), small),
-        "verify many": verify_report(verified(large, many), large),
-        "diff": diff_report(diffed(small, program(500, seed=2)), small, program(500, seed=2), time=TIME),
-        "snapshot": snapshot_report(snapshot(13)),
-        "watch": series_report(series(), place(), ended="interrupted"),
-        "series": series_report(series(5000, step_s=2, most_points=500), place("fatektool.snapshot/1")),
-        "nothing": series_report(Rounds(), place(), ended="no answer"),
-    }
+SMALL, LARGE, OTHER = program(400), program(13_184), program(500, seed=2)
+MANY = Program(13_184, (LARGE.pages[0], *program(13_184, seed=2).pages[1:]))
+REPORTS: dict[str, Callable[[], str]] = {
+    "loopback": lambda: loopback_report(loopback()),
+    "dead line": lambda: loopback_report(dead_line()),
+    "verify": lambda: verify_report(verified(LARGE, changed(LARGE, 5, 6, 40, 206)), LARGE),
+    "verify same": lambda: verify_report(verified(SMALL, SMALL), SMALL),
+    "verify many": lambda: verify_report(verified(LARGE, MANY), LARGE),
+    "diff": lambda: diff_report(diffed(SMALL, OTHER), SMALL, OTHER, time=TIME),
+    "snapshot": lambda: snapshot_report(snapshot(13)),
+    "watch": lambda: series_report(series(), place(), ended="interrupted"),
+    "series": lambda: series_report(series(5000, step_s=2, most_points=500), place("fatektool.snapshot/1")),
+    "nothing": lambda: series_report(Rounds(), place(), ended="no answer"),
+}
+"""Every kind of report, by name, and how it is made."""
+
+
+@cache
+def report(name: str) -> str:
+    """A report, made once."""
+    return REPORTS[name]()

@@ -15,7 +15,7 @@ import pytest
 
 from fatektool.report import style
 from tests.report.browser import Browser, Page
-from tests.report.documents import loopback, reports, snapshot
+from tests.report.documents import REPORTS, loopback, report, snapshot
 from tests.report.tree import parse
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("reports")
-    for name, html in reports().items():
+    for name, html in ((name, report(name)) for name in REPORTS):
         (place / f"{name}.html").write_text(html, encoding="utf-8")
     return place
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import re
+from functools import cache
 from itertools import pairwise
 
 import pytest
@@ -13,21 +14,23 @@ from fatektool.report import style
 from fatektool.report.page import LONGEST_START, is_report
 from fatektool.report.scale import Scale
 from fatektool.version import __version__
-from tests.report.documents import reports
+from tests.report.documents import REPORTS, report
 from tests.report.tree import Node, parse
 
-PAGES = reports()
-TREES = {name: parse(html) for name, html in PAGES.items()}
+
+@cache
+def tree(name: str) -> Node:
+    return parse(report(name))
 
 
-@pytest.fixture(params=TREES.values(), ids=list(TREES))
+@pytest.fixture(params=REPORTS)
 def page(request: pytest.FixtureRequest) -> Node:
-    found: Node = request.param
-    return found
+    return tree(request.param)
 
 
-def test_the_same_documents_give_the_same_bytes() -> None:
-    assert reports() == PAGES
+@pytest.mark.parametrize("name", REPORTS)
+def test_the_same_documents_give_the_same_bytes(name: str) -> None:
+    assert REPORTS[name]() == report(name)
 
 
 def test_the_frame(page: Node) -> None:
@@ -122,11 +125,11 @@ def test_the_words_of_a_verdict_do_not_rest_on_its_colour(page: Node) -> None:
     assert len(verdict.text) > 20
 
 
-@pytest.mark.parametrize("name", PAGES)
+@pytest.mark.parametrize("name", REPORTS)
 def test_a_report_knows_itself(name: str) -> None:
-    assert is_report(PAGES[name][:LONGEST_START])
-    assert not is_report(PAGES[name][:LONGEST_START].replace("fatektool", "another"))
-    assert not is_report(f" {PAGES[name]}"[:LONGEST_START])
+    assert is_report(report(name)[:LONGEST_START])
+    assert not is_report(report(name)[:LONGEST_START].replace("fatektool", "another"))
+    assert not is_report(f" {report(name)}"[:LONGEST_START])
 
 
 # --- the style sheet ------------------------------------------------------------------------------------
@@ -170,7 +173,7 @@ def test_light_dark_and_paper() -> None:
 
 def test_every_class_has_its_rule() -> None:
     used = {
-        name for tree in TREES.values() for each in tree.every()
+        name for kind in REPORTS for each in tree(kind).every()
         for name in str(each.attributes.get("class") or "").split()
     }  # fmt: skip
     assert {name for name in used if not re.search(rf"\.{name}\b", style.SHEET)} == set()
