@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import re
 
-import pytest
-
 from tests.root import ROOT
+from tests.rows import each
 
 TABLE = (ROOT / "docs" / "evidence.md").read_text(encoding="utf-8")
 MARK = re.compile(r"\[E:([\w-]*)\]")
@@ -46,7 +45,7 @@ def test_the_grades() -> None:
     assert {grade.strip() for name, _, grade, _ in ROWS if name != "mark"} == GRADES
 
 
-@pytest.mark.parametrize(("name", "statement", "source"), [(n, s, f) for n, s, _, f in ROWS if n != "mark"])
+@each(("name", "statement", "source"), [(n, s, f) for n, s, _, f in ROWS if n != "mark"])
 def test_a_row_says_something_that_others_can_look_up(name: str, statement: str, source: str) -> None:
     assert len(statement.strip()) > 15, name
     assert len(source.strip()) > 15, name

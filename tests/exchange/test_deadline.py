@@ -21,6 +21,7 @@ from tests.exchange.peer import (
     page_answer,
     register,
 )
+from tests.rows import each
 
 R0 = ReadRegisters(Element.parse("R0"), 1)
 ASK_R0_BYTES, ANSWER_R0_BYTES = 16, 13
@@ -28,7 +29,7 @@ STATUS_BYTES = 8 + 15
 FENCE_BYTES = 2 * len(b"\x02014EN0XX\x03")
 
 
-@pytest.mark.parametrize(
+@each(
     ("line", "byte_s"),
     [
         (LineSettings(), 10 / 9600),
@@ -36,8 +37,8 @@ FENCE_BYTES = 2 * len(b"\x02014EN0XX\x03")
         (LineSettings(921600, "8N1"), 10 / 921600),
     ],
 )
-@pytest.mark.parametrize("timeout_s", [0.05, 0.5, 30.0])
-@pytest.mark.parametrize(
+@each("timeout_s", [0.05, 0.5, 30.0])
+@each(
     ("request_", "size"),
     [
         (R0, ASK_R0_BYTES + ANSWER_R0_BYTES),

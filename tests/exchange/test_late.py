@@ -22,6 +22,7 @@ from fatektool.protocol.fatek.facon.codec import FACON
 from fatektool.simulator.build import build_simulation
 from fatektool.transport.base import LineSettings
 from fatektool.transport.memory import MemoryTransport
+from tests.rows import each
 
 R0 = ReadRegisters(Element("R", 0), 1)
 TO_R0 = WriteRegisters(Element("R", 0), (7,))
@@ -52,8 +53,8 @@ def failure_of(link: Link, request: Request[Any]) -> NoAnswer | None:
     return None
 
 
-@pytest.mark.parametrize("request_", REQUESTS, ids=lambda request: type(request).__name__)
-@pytest.mark.parametrize("delay_s", [0.55, 0.7, 0.9, 1.1, 1.3, 1.6, 1.9])
+@each("request_", REQUESTS, ids=lambda request: type(request).__name__)
+@each("delay_s", [0.55, 0.7, 0.9, 1.1, 1.3, 1.6, 1.9])
 def test_it_is_answered_or_told_as_late(delay_s: float, request_: Request[Any]) -> None:
     for retries in range(5):
         warnings: list[str] = []
@@ -91,8 +92,8 @@ class Connection(MemoryTransport):
         self._coming.clear()
 
 
-@pytest.mark.parametrize("request_", REQUESTS, ids=lambda request: type(request).__name__)
-@pytest.mark.parametrize("delay_s", [0.55, 0.9, 1.1, 1.3, 1.6, 1.9])
+@each("request_", REQUESTS, ids=lambda request: type(request).__name__)
+@each("delay_s", [0.55, 0.9, 1.1, 1.3, 1.6, 1.9])
 def test_no_late_answer_is_lost_with_its_connection(delay_s: float, request_: Request[Any]) -> None:
     for retries in range(5):
         warnings: list[str] = []

@@ -18,6 +18,7 @@ from fatektool.transport.base import LineSettings
 from fatektool.transport.memory import MemoryTransport
 from tests.exchange.peer import SILENCE, Pieces, Rules, ask_page, frame, linked, page_answer, soon
 from tests.night import examples
+from tests.rows import each
 
 if TYPE_CHECKING:
     from fatektool.protocol.codec import Frame
@@ -141,11 +142,10 @@ def test_a_refused_write_ends_it_and_nothing_behind_it_is_sent(page: int) -> Non
     assert done == list(range(1, page + 1))
 
 
-@pytest.mark.parametrize("page", range(len(PAGES)))
-@pytest.mark.parametrize(
+@each("page", range(len(PAGES)))
+@each(
     "instead",
     [b"\x02015006A\x03", b"\x0201500\x03", frame("510"), frame("500", station=2), b"\xff" * 9],
-    ids=["checksum", "short", "command", "station", "noise"],
 )
 def test_what_is_no_acknowledgement_is_none(page: int, instead: bytes) -> None:
     peer = Rules(dict(zip(RAW_WRITES, [TAKEN] * len(PAGES), strict=True)))

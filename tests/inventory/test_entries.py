@@ -10,6 +10,7 @@ from fatektool.address import PlcAddress
 from fatektool.errors import DataError, UsageError
 from fatektool.inventory.entries import Inventory, PlcEntry, parse_inventory
 from fatektool.inventory.select import select
+from tests.rows import each
 
 FOLDER = Path("/etc/plant")
 FILE = FOLDER / "fatek.toml"
@@ -121,7 +122,7 @@ FAULTS = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("text", "message"), FAULTS)
+@each(("text", "message"), FAULTS)
 def test_a_fault_is_named_with_its_line(text: str, message: str) -> None:
     found = parsed(text)
     assert len(found.faults) >= 1

@@ -20,6 +20,7 @@ from tests.ladder.meaning import by_circuit, by_stack
 from tests.ladder.shapes import shape
 from tests.ladder.test_words import PROGRAMS
 from tests.ladder.vectors import PRINTED, READ
+from tests.rows import each
 
 if TYPE_CHECKING:
     from tests.ladder.vectors import Vector
@@ -80,7 +81,7 @@ def named(text: str) -> Network:
     return network(*text.split(", "))
 
 
-@pytest.mark.parametrize("text", PRINTED_NETWORKS)
+@each("text", PRINTED_NETWORKS)
 def test_a_network_is_this_circuit(text: str) -> None:
     given_ = named(text)
     found = circuit_of(given_)
@@ -89,7 +90,7 @@ def test_a_network_is_this_circuit(text: str) -> None:
     assert instructions_of(found) == given_.instructions
 
 
-@pytest.mark.parametrize("text", REASONS)
+@each("text", REASONS)
 def test_what_is_no_circuit_says_why(text: str) -> None:
     given_ = named(text)
     found = circuit_of(given_)
@@ -117,7 +118,7 @@ def test_words_that_are_not_known_say_so(words: tuple[int, ...], reason: str, nu
     assert circuit_of(given_) == NoCircuit(reason, number)
 
 
-@pytest.mark.parametrize("vector", [*PRINTED, *READ], ids=lambda vector: vector.text)
+@each("vector", [*PRINTED, *READ], ids=lambda vector: vector.text)
 def test_every_vector_is_part_of_a_circuit(vector: Vector) -> None:
     """Each instruction that is known, in a network that has what it needs."""
     before = {

@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-import pytest
-
 from fatektool.ladder.decode import decode, encode
 from fatektool.ladder.grades import Grade
 from fatektool.ladder.networks import Code
 from fatektool.ladder.table import FORMS
 from tests.ladder.vectors import PRINTED, READ, Vector
+from tests.rows import each
 
 
-@pytest.mark.parametrize("vector", PRINTED, ids=lambda vector: vector.text)
+@each("vector", PRINTED, ids=lambda vector: vector.text)
 def test_the_vendors_print(vector: Vector) -> None:
     (found,) = decode(vector.words)
     assert (found.text, found.grade, found.known) == (vector.text, Grade.A, True)
     assert encode([found]) == vector.words
 
 
-@pytest.mark.parametrize("vector", READ, ids=lambda vector: vector.text)
+@each("vector", READ, ids=lambda vector: vector.text)
 def test_what_is_read_from_use(vector: Vector) -> None:
     (found,) = decode(vector.words)
     assert found.text.removeprefix("~") == vector.text
@@ -44,7 +43,7 @@ def test_there_are_enough_vectors() -> None:
     assert len(READ) > 80
 
 
-@pytest.mark.parametrize(
+@each(
     ("words", "text"),
     [
         ((0x0AF5,), "?? 0AF5"),

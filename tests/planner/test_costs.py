@@ -27,15 +27,14 @@ from tests.night import examples
 from tests.planner.exhaustive import wire_bytes
 from tests.planner.sets import named
 from tests.plcs import simulated
+from tests.rows import each
 
 if TYPE_CHECKING:
     from fatektool.protocol.codec import Codec
 
 
-@pytest.mark.parametrize(
-    ("codec", "symbol"), [(codec, symbol) for codec in (FACON, MSERIES) for symbol in KINDS]
-)
-@pytest.mark.parametrize("count", [1, 2, 7, 32])
+@each(("codec", "symbol"), [(codec, symbol) for codec in (FACON, MSERIES) for symbol in KINDS])
+@each("count", [1, 2, 7, 32])
 def test_runs_and_items(symbol: str, count: int, codec: Codec) -> None:
     """Each value of a run costs the same, each item of a mixed request too, wherever they are."""
     first = Element(symbol, KINDS[symbol].step)

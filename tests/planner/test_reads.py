@@ -20,6 +20,7 @@ from tests.planner.plain import merged, one_each
 from tests.planner.sets import TURNAROUNDS, element_sets, named, scattered, side_by_side
 from tests.plcs import Simulated, simulated
 from tests.protocol.decoding import request_of
+from tests.rows import each
 
 AREAS = {
     "X": 256,
@@ -166,8 +167,8 @@ def test_one_element_is_one_request(symbol: str) -> None:
 # --- figures --------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("turnaround", TURNAROUNDS)
-@pytest.mark.parametrize(
+@each("turnaround", TURNAROUNDS)
+@each(
     ("text", "count"),
     [
         ("R0-R3839", 60),

@@ -10,6 +10,7 @@ from fatektool.plcports.messages import MessageTable
 from fatektool.plcports.operands import Operand
 from fatektool.plcports.rows import SharedBlock, Transaction
 from fatektool.plcports.tables import ClinkTable, HighSpeedTable, MbusTable
+from tests.rows import each
 
 CLINK_RANGES = """\
 0 X 0 255 1
@@ -53,7 +54,7 @@ def mbus(*values: int) -> list[int | None]:
     return [f.code for f in MbusTable((Transaction(station, command, length, master, slave),)).faults()]
 
 
-@pytest.mark.parametrize(("code", "first", "last", "step"), ranges(CLINK_RANGES))
+@each(("code", "first", "last", "step"), ranges(CLINK_RANGES))
 def test_the_references_of_md0(code: int, first: int, last: int, step: int) -> None:
     for good in (first, first + step, last):
         assert md0(1, 1, 1, code, good, code, good) == []
@@ -65,7 +66,7 @@ def test_the_references_of_md0(code: int, first: int, last: int, step: int) -> N
             assert md0(1, 1, 1, code, odd, code, first) == [5]
 
 
-@pytest.mark.parametrize(("code", "first", "last", "step"), ranges(CLINK_RANGES))
+@each(("code", "first", "last", "step"), ranges(CLINK_RANGES))
 def test_all_of_the_data_must_be_within(code: int, first: int, last: int, step: int) -> None:
     stride = 16 if step == 8 else 1
     assert first + 7 * stride <= last
@@ -73,8 +74,8 @@ def test_all_of_the_data_must_be_within(code: int, first: int, last: int, step: 
     assert md0(1, 1, 9, code, last - 7 * stride, code, 0) == [5]
 
 
-@pytest.mark.parametrize("master", range(14))
-@pytest.mark.parametrize("slave", range(14))
+@each("master", range(14))
+@each("slave", range(14))
 def test_types_that_go_together_in_md0(master: int, slave: int) -> None:
     assert md0(1, 1, 1, master, 0, slave, 0) == ([] if (master <= 5) == (slave <= 5) else [6])
 
@@ -124,9 +125,9 @@ def test_the_references_of_an_mbus_master(code: int, first: int, last: int, step
     assert mbus(1, 2, 1, code, last + step, *slave) == [5]
 
 
-@pytest.mark.parametrize("slave", [0, 1, 3, 4])
-@pytest.mark.parametrize("master", [1, 2, 3, 12, 13])
-@pytest.mark.parametrize("command", [1, 2, 3])
+@each("slave", [0, 1, 3, 4])
+@each("master", [1, 2, 3, 12, 13])
+@each("command", [1, 2, 3])
 def test_what_mbus_reads_and_writes(master: int, slave: int, command: int) -> None:
     """The table of section 13.2.2: 0 and 1 go with Y M S, 3 and 4 with R D; 1 and 3 are read only."""
     expected = [4] if command != 1 and slave in {1, 3} else []

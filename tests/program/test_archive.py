@@ -16,6 +16,7 @@ from fatektool.program.image import Program
 from fatektool.program.plc_record import SHAPE
 from tests.program.fbs import fbs_program
 from tests.program.samples import backup, document, file_of, header, plc_record, program
+from tests.rows import each
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -223,9 +224,7 @@ DAMAGE = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("damage", "message"), DAMAGE, ids=[damage.__name__.partition("=")[0] for damage, _ in DAMAGE]
-)
+@each(("damage", "message"), DAMAGE, ids=lambda row: row[1])
 def test_damage_is_refused_and_named(damage: Callable[[dict[str, Any]], None], message: str) -> None:
     top = document(program(400))
     damage(top)

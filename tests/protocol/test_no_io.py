@@ -5,9 +5,8 @@ from __future__ import annotations
 import ast
 from pathlib import Path
 
-import pytest
-
 import fatektool
+from tests.rows import each
 
 PACKAGE = Path(fatektool.__file__).parent
 FILES = sorted(path for name in ("protocol", "plcports") for path in (PACKAGE / name).rglob("*.py"))
@@ -32,7 +31,7 @@ LIBRARIES = {"modbus/pdu.py": "pymodbus"}
 OURS = ("fatektool.errors", "fatektool.protocol", "fatektool.plcports")
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(PACKAGE)))
+@each("path", FILES, ids=lambda path: str(path.relative_to(PACKAGE)))
 def test_no_io(path: Path) -> None:
     for node in ast.walk(ast.parse(path.read_text("utf-8"))):
         match node:

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from fatektool.errors import DataError, UsageError
 from fatektool.protocol.values import NUMBERS, Value, ValueType, decode, default_type, encode
+from tests.rows import each
 
 BOOL, U16, I16, U32, I32, F32, BCD, HEX = ValueType
 WHOLE = "expected a whole number such as 4261, -1 or 0x10A5"
@@ -36,7 +37,7 @@ def test_the_type_when_none_is_asked_for(bits: int, kind: ValueType) -> None:
 # --- both ways ------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
+@each(
     ("kind", "bits", "raw", "value"),
     [
         (BOOL, 1, 0, False),
@@ -147,8 +148,8 @@ def test_bits_that_are_no_bcd(raw: int, bits: int) -> None:
 # --- as people write them -------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("kind", [None, BOOL])
-@pytest.mark.parametrize(
+@each("kind", [None, BOOL])
+@each(
     ("text", "raw"),
     [("on", 1), ("ON", 1), ("true", 1), ("1", 1), ("off", 0), ("False", 0), ("0", 0), (" on ", 1)],
 )
@@ -156,14 +157,14 @@ def test_discretes(text: str, raw: int, kind: ValueType | None) -> None:
     assert encode(text, kind, 1) == raw
 
 
-@pytest.mark.parametrize("text", ["", "2", "yes", "o", "onn", "01", "-1", "1.0", "o n", "\u0661"])
+@each("text", ["", "2", "yes", "o", "onn", "01", "-1", "1.0", "o n", "\u0661"])
 def test_no_discrete(text: str) -> None:
     with pytest.raises(UsageError) as caught:
         encode(text, BOOL, 1)
     assert caught.value.message == f"value {text!r}: expected on or off, true or false, 1 or 0"
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "kind", "bits", "raw"),
     [
         ("4261", None, 16, 4261),
@@ -202,8 +203,8 @@ def test_numbers(text: str, kind: ValueType | None, bits: int, raw: int) -> None
     assert encode(text, kind, bits) == raw
 
 
-@pytest.mark.parametrize("kind", [None, U16, I16, BCD])
-@pytest.mark.parametrize(
+@each("kind", [None, U16, I16, BCD])
+@each(
     "text",
     [
         "", "-", "+", "--1", "+-1", "1_0", "1 0", "1,0", "1.0", "1e3", "0x", "0b", "0b2", "0xG", "0x1_0",
@@ -216,9 +217,7 @@ def test_no_whole_number(text: str, kind: ValueType | None) -> None:
     assert caught.value.message == f"value {text!r}: {WHOLE}"
 
 
-@pytest.mark.parametrize(
-    "text", ["", "0x", "-1", "+1", "0x-1", "0x0x12", "0x0X12", "12G4", "1_0", "1.5", "\uff11"]
-)
+@each("text", ["", "0x", "-1", "+1", "0x-1", "0x0x12", "0x0X12", "12G4", "1_0", "1.5", "\uff11"])
 def test_no_hex(text: str) -> None:
     with pytest.raises(UsageError) as caught:
         encode(text, HEX, 16)
@@ -283,8 +282,8 @@ def test_too_large_for_a_float(text: str) -> None:
         encode(text, F32, 32)
 
 
-@pytest.mark.parametrize("kind", [None, U32, I32, BCD, HEX, F32])
-@pytest.mark.parametrize("text", ["9" * 5000, "0x" + "F" * 5000, "-" + "9" * 5000, "1" * 999])
+@each("kind", [None, U32, I32, BCD, HEX, F32])
+@each("text", ["9" * 5000, "0x" + "F" * 5000, "-" + "9" * 5000, "1" * 999])
 def test_thousands_of_digits(text: str, kind: ValueType | None) -> None:
     with pytest.raises(UsageError, match=r"^value "):
         encode(text, kind, 32)

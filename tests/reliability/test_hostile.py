@@ -23,6 +23,7 @@ from tests.forks.command import COMMAND
 from tests.guard import GUARD_S
 from tests.plant import snapshot_of
 from tests.program.samples import backup, document, program
+from tests.rows import each
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -161,8 +162,8 @@ def test_a_key_that_stands_twice_is_refused_wherever_it_stands(name: str) -> Non
             read(text.replace('"TWIN"', json.dumps(path[-1])).encode())
 
 
-@pytest.mark.parametrize("name", FILES)
-@pytest.mark.parametrize("value", NO_NUMBERS)
+@each("name", FILES)
+@each("value", NO_NUMBERS)
 def test_no_number_is_taken_for_one(name: str, value: str) -> None:
     good, read = FILES[name]
     keys = {"backup": "passes", "snapshot": "station", "state": "ladder_words"}

@@ -7,9 +7,8 @@ import re
 from functools import cache
 from typing import TYPE_CHECKING
 
-import pytest
-
 from tests.root import ROOT
+from tests.rows import each
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -25,7 +24,7 @@ def functions(path: Path) -> set[str]:
     return {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)}
 
 
-@pytest.mark.parametrize(("file", "function"), sorted(set(NAMED.findall(PAGE))))
+@each(("file", "function"), sorted(set(NAMED.findall(PAGE))))
 def test_a_test_that_is_named_exists(file: str, function: str) -> None:
     if "/" in file:
         assert (ROOT / file).is_file()

@@ -25,6 +25,7 @@ from fatektool.transport.trace import (
     time_text,
 )
 from fatektool.transport.trace_reader import TraceRecord, read_trace
+from tests.rows import each
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -382,7 +383,7 @@ def test_a_last_line_cut_off_is_named() -> None:
         next(records)
 
 
-@pytest.mark.parametrize("kept", range(24, len(written(".pcap"))))
+@each("kept", range(24, len(written(".pcap"))))
 def test_a_pcap_cut_off_anywhere(kept: int) -> None:
     ends = [24, 24 + 28, 24 + 28 + 35]
     whole = sum(end <= kept for end in ends) - 1
@@ -395,13 +396,13 @@ def test_a_pcap_cut_off_anywhere(kept: int) -> None:
             next(records)
 
 
-@pytest.mark.parametrize("kept", range(4, 24))
+@each("kept", range(4, 24))
 def test_a_pcap_without_its_header(kept: int) -> None:
     with pytest.raises(DataError, match="expected link type 147"):
         list(read_trace(written(".pcap")[:kept], "line.pcap"))
 
 
-@pytest.mark.parametrize(
+@each(
     ("at", "byte"),
     [
         (24 + 28 + 8, 3),  # too short for its own header

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.rows import each
 from tests.wireshark.capture import (
     EXPERT,
     FACON,
@@ -265,7 +266,7 @@ def packets(tshark: Tshark) -> list[Packet]:
     return tshark(cases_in(FACON, CASES))
 
 
-@pytest.mark.parametrize("place", range(len(CASES)), ids=[case.name for case in CASES])
+@each("place", range(len(CASES)), ids=lambda place: CASES[place].name)
 def test_a_record(packets: list[Packet], place: int) -> None:
     case = CASES[place]
     assert seen(packets[place], case.fields) == case.fields

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.rows import each
 from tests.wireshark.capture import (
     EXPERT,
     INFO,
@@ -203,7 +204,7 @@ def packets(tshark: Tshark) -> list[Packet]:
     return tshark(cases_in(MSERIES, CASES))
 
 
-@pytest.mark.parametrize("place", range(len(CASES)), ids=[each.name for each in CASES])
+@each("place", range(len(CASES)), ids=[each.name for each in CASES])
 def test_a_record(packets: list[Packet], place: int) -> None:
     wanted = CASES[place].fields
     assert len(packets) == len(CASES)

@@ -8,6 +8,7 @@ import pytest
 
 from fatektool.exchange.receiver import Receiver
 from tests.plant import cut_after, error_of, recorded
+from tests.rows import each
 
 if TYPE_CHECKING:
     from fatektool.exchange.state import LinkState
@@ -38,7 +39,7 @@ def test_every_kind_and_type(plant: Plant) -> None:
     assert plant.cli("read", "D0-D6:u32", "-q").out.split()[::2] == ["D0", "D2", "D4", "D6"]
 
 
-@pytest.mark.parametrize(
+@each(
     "words",
     [
         ["R0:f32:f32"], ["R0:u8"], ["R70000"], ["R0-X5"], ["R9-R0"], ["R0:0"], ["R0:100001"],
@@ -60,7 +61,7 @@ def test_a_wrong_selection_is_refused_before_a_byte_is_sent(
     assert sent == []
 
 
-@pytest.mark.parametrize(
+@each(
     "words",
     [
         ["R0=65536"], ["R0=-32769"], ["R0:i16=32768"], ["R0:u16=-1"], ["R0:bcd=10000"], ["R0:bcd=-1"],

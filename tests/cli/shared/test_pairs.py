@@ -15,6 +15,7 @@ import click
 import pytest
 
 from fatektool.cli.app import app
+from tests.rows import each
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -178,7 +179,7 @@ def options(command: click.Command) -> set[str]:
     return {max(option.opts, key=len) for option in found}
 
 
-@pytest.mark.parametrize(("name", "command"), list(commands()), ids=str)
+@each(("name", "command"), list(commands()), ids=str)
 def test_each_option_is_thought_about(name: str, command: click.Command) -> None:
     words = " ".join([
         FREE.get(name, ""),
@@ -201,7 +202,7 @@ def files(press: Press, place: Path) -> Path:
     return place
 
 
-@pytest.mark.parametrize(("start", "one", "other"), APART)
+@each(("start", "one", "other"), APART)
 def test_options_that_would_leave_each_other_without_effect(
     cli: Cli, files: Path, start: str, one: str, other: str
 ) -> None:
@@ -214,7 +215,7 @@ def test_options_that_would_leave_each_other_without_effect(
     assert sorted(files.rglob("*")) == before
 
 
-@pytest.mark.parametrize(("start", "one"), ALONE)
+@each(("start", "one"), ALONE)
 def test_an_option_without_what_gives_it_an_effect(cli: Cli, files: Path, start: str, one: str) -> None:
     before = sorted(files.rglob("*"))
     done = cli(*start.split(), *one.split())

@@ -10,13 +10,14 @@ from fatektool.errors import UsageError
 from fatektool.jobs.elements.selection import Item, overlapping, parse_item, parse_items
 from fatektool.protocol.elements import KINDS, Element
 from fatektool.protocol.values import ValueType
+from tests.rows import each
 
 
 def shown(items: list[Item]) -> list[str]:
     return [f"{item.key} {item.element} {item.type.value}" for item in items]
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "items"),
     [
         ("R12", ["R12 R12 u16"]),

@@ -11,6 +11,7 @@ from fatektool.errors import DataError
 from fatektool.jobs.plcports.toml import load_table
 from fatektool.jobs.plcports.toml_text import dump_table
 from tests.plcports.samples import TABLES, tables
+from tests.rows import each
 
 if TYPE_CHECKING:
     from fatektool.plcports.tables import Table
@@ -200,7 +201,7 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("name", "before", "after", "said"), WRONG)
+@each(("name", "before", "after", "said"), WRONG)
 def test_what_is_wrong_is_named(name: str, before: str, after: str, said: str) -> None:
     text = WRITTEN[name]
     at = text.rindex(before) if name == "md0" and before == "length = 64" else text.index(before)

@@ -15,6 +15,7 @@ from fatektool.jobs.snapshots.compare import compare_snapshots
 from fatektool.jobs.snapshots.formats import as_json, as_ndjson
 from fatektool.jobs.snapshots.snapshot import load_snapshot, parse_snapshot
 from tests.plant import error_of, snapshot_of
+from tests.rows import each
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -77,7 +78,7 @@ DAMAGE: dict[str, Callable[[dict[str, Any]], object]] = {
 }
 
 
-@pytest.mark.parametrize("name", DAMAGE)
+@each("name", DAMAGE)
 def test_damage_is_named(name: str) -> None:
     with pytest.raises(DataError) as caught:
         parse_snapshot(edited(DAMAGE[name]), "monday.json")

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from fatektool.simulator.plc import SimulatedPlc
 from fatektool.simulator.slaves.mseries.frame import MAX_FRAME, FrameCutter
 from fatektool.simulator.slaves.mseries.slave import MSeriesSlave
+from tests.rows import each
 from tests.simulator.slaves.mseries_wire import framed, reply, request
 from tests.simulator.wire import answers
 
@@ -46,8 +47,8 @@ def test_silent(slave: MSeriesSlave, silent: bytes) -> None:
     assert answers(slave, ASK) == [ANSWER]
 
 
-@pytest.mark.parametrize("at", range(len(ASK)))
-@pytest.mark.parametrize("bit", range(8))
+@each("at", range(len(ASK)))
+@each("bit", range(8))
 def test_one_wrong_bit_is_silence_and_costs_no_other_request(slave: MSeriesSlave, at: int, bit: int) -> None:
     wrong = bytearray(ASK)
     wrong[at] ^= 1 << bit

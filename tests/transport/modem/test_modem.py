@@ -14,6 +14,7 @@ from fatektool.transport.memory import MemoryTransport
 from fatektool.transport.modem.commands import Result, result_of
 from fatektool.transport.modem.device import ModemTransport
 from fatektool.transport.modem.dial import Call
+from tests.rows import each
 from tests.transport.modem.scripted import SILENCE, ScriptedModem
 
 NUMBER = "0228082192"
@@ -68,10 +69,10 @@ def facon(transport: ModemTransport) -> Plc:
 # --- the way there ---------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("outcome", ["CONNECT", "CONNECT 9600", "CONNECT 9600/ARQ/V32/LAPM"])
-@pytest.mark.parametrize("echo", [True, False])
-@pytest.mark.parametrize("figures", [True, False])
-@pytest.mark.parametrize("stubborn", [True, False])
+@each("outcome", ["CONNECT", "CONNECT 9600", "CONNECT 9600/ARQ/V32/LAPM"])
+@each("echo", [True, False])
+@each("figures", [True, False])
+@each("stubborn", [True, False])
 def test_facon_over_a_call(outcome: str, *, echo: bool, figures: bool, stubborn: bool) -> None:
     plc = build_simulation(ladder_words=400)
     modem = ScriptedModem([outcome], plc.line(), echo=echo, figures=figures, stubborn=stubborn)
@@ -114,7 +115,7 @@ def test_what_it_says_behind_connect_is_nobodys_answer() -> None:
         assert transport.drain() == b""
 
 
-@pytest.mark.parametrize(
+@each(
     ("line", "result"),
     [
         ("OK", Result.OK),
@@ -157,8 +158,8 @@ def test_what_a_line_means(line: str, result: Result | None) -> None:
 # --- no connection ------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("figures", [False, True], ids=["words", "figures"])
-@pytest.mark.parametrize(
+@each("figures", [False, True])
+@each(
     ("outcome", "tries", "advice"),
     [
         ("BUSY", 3, "call later"),
@@ -361,8 +362,8 @@ def read_all(transport: ModemTransport, most: int, heard: bytearray) -> None:
         heard += transport.read(most, 1.0)
 
 
-@pytest.mark.parametrize("cut", range(1, 15))
-@pytest.mark.parametrize("most", [1, 3, 4096])
+@each("cut", range(1, 15))
+@each("most", [1, 3, 4096])
 def test_the_end_of_a_call_is_told_after_what_came_before_it(cut: int, most: int) -> None:
     class Other:
         def receive(self, data: bytes, now: float) -> list[tuple[float, bytes]]:

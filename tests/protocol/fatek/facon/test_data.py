@@ -31,6 +31,7 @@ from fatektool.protocol.plc_errors import MEANINGS, PROGRAM_REFUSED, asked, refu
 from fatektool.protocol.status import DetailedStatus
 from tests.protocol.strategies import BY_COMMAND
 from tests.protocol.vectors import EXAMPLES, FBE_28MC_BYTES
+from tests.rows import each
 
 PAGE = bytes(range(128))
 PAGE_HEX = PAGE.hex().upper().encode()
@@ -46,7 +47,7 @@ def test_every_command_is_drawn() -> None:
 # --- requests that are none -----------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
+@each(
     ("command", "data", "why"),
     [
         (0x00, b"", "command 00 is not in the paper"),
@@ -160,7 +161,7 @@ WRONG_ANSWERS: list[tuple[Request[Any], bytes, str]] = [
 ]
 
 
-@pytest.mark.parametrize(("request_", "data", "why"), WRONG_ANSWERS)
+@each(("request_", "data", "why"), WRONG_ANSWERS)
 def test_no_answer(request_: Request[Any], data: bytes, why: str) -> None:
     with pytest.raises(FrameError, match=why):
         DATA.parse_answer(request_, data)
@@ -196,8 +197,8 @@ def requests_that_can_be_refused() -> list[Request[Any]]:
     ]
 
 
-@pytest.mark.parametrize("request_", requests_that_can_be_refused(), ids=asked)
-@pytest.mark.parametrize("code", range(1, 16))
+@each("request_", requests_that_can_be_refused(), ids=asked)
+@each("code", range(1, 16))
 def test_error_codes(request_: Request[Any], code: int) -> None:
     with pytest.raises(PlcRefused) as caught:
         DATA.parse_answer(request_, b"%X" % code)
@@ -261,7 +262,7 @@ def test_loopback_has_no_error_character() -> None:
 # --- echoes ---------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
+@each(
     ("request_", "passes"),
     [
         (ReadBriefStatus(), False),

@@ -32,6 +32,7 @@ from tests.protocol.decoding import query, response
 from tests.protocol.fatek.mseries.vectors import EXAMPLES, PAYLOADS
 from tests.protocol.strategies import elements
 from tests.protocol.vectors import FBE_28MC, FBE_28MC_BYTES
+from tests.rows import each
 
 # --- elements -------------------------------------------------------------------------------------
 
@@ -50,7 +51,7 @@ def test_the_table_is_whole() -> None:
     assert set(SYMBOLS) == set(KINDS)
 
 
-@pytest.mark.parametrize("symbol", SYMBOLS)
+@each("symbol", SYMBOLS)
 def test_symbols(symbol: str) -> None:
     for address in (0, 8, KINDS[symbol].last):
         one = Element(symbol, address)
@@ -106,7 +107,7 @@ def test_the_longest_symbol_is_taken() -> None:
 # --- requests that are none -----------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
+@each(
     ("command", "data", "why"),
     [
         (0x00, "", "command 00 is not in the M-series paper"),
@@ -166,7 +167,7 @@ def test_no_request(command: int, data: str, why: str) -> None:
 X0, R0, DR0, DF8 = Element("X", 0), Element("R", 0), Element("DR", 0), Element("DF", 8)
 
 
-@pytest.mark.parametrize(
+@each(
     ("request_", "data", "why"),
     [
         (ReadBriefStatus(), "", "expected 4 bytes of data, got 0"),
@@ -193,10 +194,8 @@ def test_no_answer(request_: Request[Any], data: str, why: str) -> None:
         DATA.parse_answer(request_, bytes.fromhex(data))
 
 
-@pytest.mark.parametrize(
-    "request_", [example.request for example in EXAMPLES + PAYLOADS] + [Loopback(b"")], ids=asked
-)
-@pytest.mark.parametrize("code", [*range(1, 16), 0x55, 0xFF])
+@each("request_", [example.request for example in EXAMPLES + PAYLOADS] + [Loopback(b"")], ids=asked)
+@each("code", [*range(1, 16), 0x55, 0xFF])
 def test_error_codes(request_: Request[Any], code: int) -> None:
     with pytest.raises(PlcRefused) as caught:
         DATA.parse_answer(request_, bytes([code]))

@@ -12,6 +12,7 @@ from fatektool.protocol.commands import ReadRegisters, Request, RunStop
 from fatektool.protocol.elements import Element
 from fatektool.protocol.fatek.mseries.codec import MSERIES, frame_bytes
 from tests.protocol.decoding import frames
+from tests.rows import each
 
 R0 = ReadRegisters(Element("R", 0), 1)
 TABLE = {
@@ -32,7 +33,7 @@ def refused(code: int, request: Request[Any] = R0) -> PlcRefused:
     return caught.value
 
 
-@pytest.mark.parametrize("code", range(1, 256))
+@each("code", range(1, 256))
 def test_a_code_is_told_in_the_words_of_this_paper(code: int) -> None:
     error = refused(code)
     assert error.code == code
