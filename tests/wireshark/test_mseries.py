@@ -204,7 +204,7 @@ def packets(tshark: Tshark) -> list[Packet]:
     return tshark(cases_in(MSERIES, CASES))
 
 
-@each("place", range(len(CASES)), ids=[each.name for each in CASES])
+@each("place", range(len(CASES)), ids=lambda place: CASES[place].name)
 def test_a_record(packets: list[Packet], place: int) -> None:
     wanted = CASES[place].fields
     assert len(packets) == len(CASES)
