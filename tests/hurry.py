@@ -17,7 +17,7 @@ from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING
 from unittest.mock import patch
 
-from fatektool.simulator.listen.pty import PtyDoor
+from fatektool.simulator.listen.pty import PtyListener
 from fatektool.simulator.listen.servers import running
 from tests.clocked import clocked
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import selectors
     from collections.abc import Callable, Iterator
 
-    from fatektool.simulator.listen.listeners import Line
+    from fatektool.simulator.listen.base import ServedLine
     from fatektool.simulator.listen.servers import Server
 
 
@@ -43,8 +43,8 @@ class ServerClock:
         self._asked = self._taken = self._answered = self._read = 0  # bytes
         self._taking = 0
         self._open = 0
-        self._lines, self._dispatch, self._ready = server.simulation, server.dispatch, server._ready
-        server.simulation = self
+        self._lines, self._dispatch, self._ready = server.lines, server.dispatch, server._ready
+        server.lines = self
         server.now = self.now
         server.dispatch = self.dispatch  # type: ignore[method-assign]
         server._ready = self.ready  # type: ignore[assignment, method-assign]
@@ -53,7 +53,7 @@ class ServerClock:
     def powered(self) -> bool:
         return self._lines.powered
 
-    def line(self, *, whole_answers: bool = False) -> Line:
+    def line(self, *, whole_answers: bool = False) -> ServedLine:
         return _Counted(self._lines.line(whole_answers=whole_answers), self)  # a pty has its line already
 
     def now(self) -> float:
@@ -89,7 +89,7 @@ class ServerClock:
                 self._answered -= coming + held
         return deliveries
 
-    def read_by(self, door: PtyDoor) -> Callable[[int, int], bytes]:
+    def read_by(self, door: PtyListener) -> Callable[[int, int], bytes]:
         """``os.read``, which counts what this door reads, whatever it makes of it."""
         read = os.read
 
@@ -149,7 +149,7 @@ class ServerClock:
 class _Counted:
     """The line of a socket, whose requests are counted."""
 
-    def __init__(self, line: Line, clock: ServerClock) -> None:
+    def __init__(self, line: ServedLine, clock: ServerClock) -> None:
         self._line = line
         self._clock = clock
 
@@ -166,10 +166,10 @@ class _Counted:
 def hurried(server: Server) -> Iterator[Server]:
     """Serve in a thread, as ``running`` does, on a clock that jumps for the clients in this process."""
     clock = ServerClock(server)
-    addresses = {door.address for door in server.doors}
+    addresses = {door.address for door in server.listeners}
     with ExitStack() as stack:
-        for door in server.doors:
-            if isinstance(door, PtyDoor):
+        for door in server.listeners:
+            if isinstance(door, PtyListener):
                 stack.enter_context(patch.object(os, "read", clock.read_by(door)))
         stack.enter_context(clocked(clock, addresses.__contains__))
         yield stack.enter_context(running(server))

@@ -81,7 +81,7 @@ def _run(words: list[str]) -> int:  # noqa: PLR0911  # a way out a class of erro
     except BrokenPipeError:  # a pipe of somebody else's
         _drop_output()
         return CUT_SHORT
-    except Exception as error:  # the last door: no traceback for the user
+    except Exception as error:  # whatever it is: no traceback for the user
         if isinstance(error, OSError) and error.errno in _OUTPUT_LOST and error.filename is None:
             _drop_output()
             return failed(_output_lost(error), as_json=as_json)

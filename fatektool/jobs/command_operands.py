@@ -56,7 +56,7 @@ class Spoken(NamedTuple):
     answer: Any = None
 
 
-class WrongOperands(Exception):  # it is caught next door and never seen
+class WrongOperands(Exception):  # ``command_words`` catches it; no user sees it
     """The operands do not have the form of the command."""
 
 

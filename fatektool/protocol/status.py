@@ -23,7 +23,6 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from fatektool.errors import FrameError
-from fatektool.protocol.commands import BRIEF_BYTES, DETAILED_BYTES
 
 MODELS: Final = {
     0xFF: "FB, 8K steps",
@@ -37,7 +36,9 @@ POINTS_FB: Final = {0x01: 20, 0x02: 28, 0x03: 40}
 POINTS_FBS: Final = {0x00: 10, 0x01: 14, 0x02: 20, 0x03: 24, 0x04: 32, 0x05: 40, 0x06: 60}
 FBS_OS_MAJOR: Final = 4
 
-_COUNTS: Final = struct.Struct(">12H")
+BRIEF: Final = struct.Struct(">3B")
+DETAILED: Final = struct.Struct(">4B12H36x")
+"""The layouts of 40 and 53; the 36 bytes at the end are reserved."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,9 +103,10 @@ class BriefStatus:
         Raises:
             FrameError: not three bytes.
         """
-        if len(data) != BRIEF_BYTES:
-            raise FrameError(f"brief status: expected {BRIEF_BYTES} bytes, got {len(data)}", raw=data)
-        return cls(StatusFlags.parse(data[0]), data[1], data[2], m_series, bit7=data[0] > 0x7F)
+        if len(data) != BRIEF.size:
+            raise FrameError(f"brief status: expected {BRIEF.size} bytes, got {len(data)}", raw=data)
+        flags, status2, status3 = BRIEF.unpack(data)
+        return cls(StatusFlags.parse(flags), status2, status3, m_series, bit7=flags > 0x7F)
 
     def to_bytes(self) -> bytes:
         """The three bytes again."""
@@ -174,11 +176,11 @@ class DetailedStatus:
         Raises:
             FrameError: not 64 bytes.
         """
-        if len(data) != DETAILED_BYTES:
-            raise FrameError(f"detailed status: expected {DETAILED_BYTES} bytes, got {len(data)}", raw=data)
-        version = data[3]
-        system = System(data[1], data[2], f"{version >> 4:X}.{version & 15:X}", *_COUNTS.unpack_from(data, 4))
-        return cls(StatusFlags.parse(data[0]), system, bytes(data), assumed)
+        if len(data) != DETAILED.size:
+            raise FrameError(f"detailed status: expected {DETAILED.size} bytes, got {len(data)}", raw=data)
+        flags, unit_type, points, version, *counts = DETAILED.unpack(data)
+        system = System(unit_type, points, f"{version >> 4:X}.{version & 15:X}", *counts)
+        return cls(StatusFlags.parse(flags), system, bytes(data), assumed)
 
 
 @dataclass(frozen=True, slots=True)

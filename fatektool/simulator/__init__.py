@@ -2,16 +2,17 @@
 
 ::
 
-    servers   one thread; doors, pty_door, pty_link      (or, in the same process, no server at all)
+    listen    one thread; listeners on TCP, UDP, a pty    (or, in the same process, none at all)
        │
     line      bytes and times in, bytes and times out    <── faults   what goes wrong, seeded
        │
-    slave     what a line needs of a protocol; slaves names them all
-       ├── facon_slave    ── facon_frame, facon_fields
-       └── mseries_slave  ── mseries_frame, mseries_fields
+    slaves    what a line needs of a protocol: frames cut, requests answered
+       ├── fatek               what FACON and the M-series share: commands, fields
+       ├── facon, mseries      frames, and how fields are written
+       └── modbus              functions and the map; rtu, ascii, tcp: frames
        │
     plc       what a PLC does, in values; refusal says no
-       ├── models, memory, elements, program_image
+       ├── models, memory, elements, program
        └── state      its memory in a file
 
     build     puts all of it together

@@ -7,7 +7,7 @@
 
 What came between a request and the next one is the answer to it: late answers to earlier requests, noise and
 echoes too, as the same client will ask the same again. Each request has its own row of answers, whoever asks,
-through whatever door. A request that was never recorded gets no answer, and is counted.
+through whatever listener. A request that was never recorded gets no answer, and is counted.
 
 Only a loopback is no question of its own: a client that sends one with fresh content means the same as
 before. So the loopbacks to a station are one sequence, and in what was heard the old content gives way to the

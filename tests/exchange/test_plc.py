@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from fatektool.simulator.listen.listeners import Door
+    from fatektool.simulator.listen.base import Listener
 
 MEDIA = [
     "memory",
@@ -41,7 +41,7 @@ def served(medium: str, folder: Path, **options: object) -> Iterator[str]:
         yield "sim:"
         return
     server = Server(build_simulation(**options))  # type: ignore[arg-type]
-    doors: dict[str, Callable[[], Door]] = {
+    doors: dict[str, Callable[[], Listener]] = {
         "tcp": server.open_tcp,
         "udp": server.open_udp,
         "pty": lambda: server.open_pty(folder / "plc"),

@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fatektool.errors import FrameError
-from fatektool.protocol.commands import ReadBriefStatus
+from fatektool.protocol.commands import BRIEF_BYTES, DETAILED_BYTES, ReadBriefStatus
 from fatektool.protocol.fatek.facon.data import DATA
-from fatektool.protocol.status import BriefStatus, DetailedStatus, StatusFlags
+from fatektool.protocol.status import BRIEF, DETAILED, BriefStatus, DetailedStatus, StatusFlags
 from tests.protocol.vectors import FBE_28MC, FBE_28MC_BYTES
 
 FBS_20MC_BYTES = bytes.fromhex(
@@ -53,6 +53,10 @@ def detailed(**changed: int) -> DetailedStatus:
     for name, value in changed.items():
         data[int(name.removeprefix("byte")) - 1] = value
     return DetailedStatus.parse(bytes(data))
+
+
+def test_the_layouts_are_as_long_as_the_answers() -> None:
+    assert (BRIEF.size, DETAILED.size) == (BRIEF_BYTES, DETAILED_BYTES) == (3, 64)
 
 
 @pytest.mark.parametrize(("bit", "name"), list(enumerate(FLAGS)))

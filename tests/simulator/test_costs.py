@@ -48,13 +48,13 @@ def counted(server: Server) -> Iterator[Counter[str]]:
 @pytest.mark.parametrize("clients", [1, 20])
 def test_over_tcp_an_exchange_is_one_wait_one_read_and_one_write(clients: int) -> None:
     server = Server(build_simulation())
-    door = server.open_tcp()
+    listener = server.open_tcp()
     with counted(server) as calls:
         for _ in range(clients):
-            with connected(door) as client:
+            with connected(listener) as client:
                 client.sendall(ASK)
                 assert read(client, len(ANSWER)) == ANSWER
-        with connected(door) as client:
+        with connected(listener) as client:
             client.sendall(ASK)
             assert read(client, len(ANSWER)) == ANSWER
             calls.clear()
@@ -68,8 +68,8 @@ def test_over_tcp_an_exchange_is_one_wait_one_read_and_one_write(clients: int) -
 
 def test_requests_that_come_together_are_read_together() -> None:
     server = Server(build_simulation())
-    door = server.open_tcp()
-    with counted(server) as calls, connected(door) as client:
+    listener = server.open_tcp()
+    with counted(server) as calls, connected(listener) as client:
         client.sendall(ASK)
         assert read(client, len(ANSWER)) == ANSWER
         calls.clear()
@@ -82,8 +82,8 @@ def test_requests_that_come_together_are_read_together() -> None:
 @pytest.mark.skipif(not PTY_SUPPORTED, reason="no pseudo terminals here")
 def test_over_a_pty_without_a_pace_the_same(tmp_path: Path) -> None:
     server = Server(build_simulation())
-    door = server.open_pty(tmp_path / "plc")
-    client = os.open(door.address, os.O_RDWR | os.O_NOCTTY)
+    listener = server.open_pty(tmp_path / "plc")
+    client = os.open(listener.address, os.O_RDWR | os.O_NOCTTY)
     with counted(server) as calls:
         for exchange in range(1 + EXCHANGES):
             os.write(client, ASK)

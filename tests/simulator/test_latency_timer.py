@@ -76,7 +76,7 @@ def test_it_is_late_by_at_most_a_tick_and_never_early(
 
 
 def test_over_tcp() -> None:
-    with tcp(latency_timer_ms=16) as (_, door), connected(door) as client:
+    with tcp(latency_timer_ms=16) as (_, listener), connected(listener) as client:
         start = time.perf_counter()
         for _ in range(10):
             client.sendall(ASK)

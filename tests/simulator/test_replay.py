@@ -253,14 +253,14 @@ def test_mseries() -> None:
     assert came == [[]] * len(registers[0]) + [[(0.5, registers[1])], []]
 
 
-# --- through doors --------------------------------------------------------------------------------
+# --- through listeners --------------------------------------------------------------------------------
 
 
 def over_tcp(server: Server, _: Path) -> Callable[[bytes, int], bytes]:
-    door = server.open_tcp()
+    listener = server.open_tcp()
 
     def exchange(data: bytes, size: int) -> bytes:
-        with connected(door) as client:
+        with connected(listener) as client:
             for byte in data:
                 client.sendall(bytes([byte]))
             return read(client, size)
@@ -269,12 +269,12 @@ def over_tcp(server: Server, _: Path) -> Callable[[bytes, int], bytes]:
 
 
 def over_udp(server: Server, _: Path) -> Callable[[bytes, int], bytes]:
-    door = server.open_udp()
+    listener = server.open_udp()
 
     def exchange(data: bytes, size: int) -> bytes:
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as client:
             client.settimeout(10)
-            client.sendto(data, place(door))
+            client.sendto(data, place(listener))
             return client.recv(size + 1)
 
     return exchange

@@ -49,7 +49,7 @@ class PluginCommand(click.Command):
             return unknown("interrupted", as_json=as_json)
         except BrokenPipeError:
             raise
-        except Exception as error:  # noqa: BLE001  # the last door, as in the other commands
+        except Exception as error:  # noqa: BLE001  # whatever it is, as in the other commands
             words = f"a fault of fatektool itself: {type(error).__name__}: {error}"
             return unknown(words, as_json=as_json)
 

@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fatektool.cli.shared.output import Voice
-    from fatektool.simulator.listen.listeners import Lines
+    from fatektool.simulator.listen.base import Lines
 
-_DOOR = re.compile(r"(?:\[([^\]]+)\]|([^:]*)):(\d{1,5})|(\d{1,5})", re.ASCII)
+_ADDRESS = re.compile(r"(?:\[([^\]]+)\]|([^:]*)):(\d{1,5})|(\d{1,5})", re.ASCII)
 
 _DEFAULT_MODELS = ", ".join(f"{slave.model} with {name}" for name, slave in SLAVES.items())
 
@@ -139,24 +139,28 @@ def simulate_command(
 ) -> None:
     """Be one or more PLCs with memory, for clients to be tested against.
 
-    Prints one line 'listening …' for each door, and ends on SIGTERM or Ctrl-C. Binds to 127.0.0.1 unless told
-    otherwise.
+    Prints one line 'listening …' for each address, and ends on SIGTERM or Ctrl-C. Binds to 127.0.0.1 unless
+    another host is named.
 
     For diagnosis there are faults of a line: wrong-line, noise instead of an answer, as when baud or format
     do not fit; twins, two PLCs at one station; bit-errors, each byte for itself, so that long answers suffer
-    more. The same seed gives the same faults; docs/simulator.md tells of each.
+    more. The same seed gives the same faults; docs/simulator.md describes each.
     """
     if not (tcp or udp or pty or discovery):
-        raise UsageError("no door named", hint="give --tcp HOST:PORT, --udp HOST:PORT or --pty LINK")
-    doors = [("tcp", door) for door in tcp] + [("udp", door) for door in udp]
-    doors += [("discovery", door if ":" in door else f"{door}:{MODULE_PORT}") for door in discovery]
+        raise UsageError(
+            "no address to listen on", hint="give --tcp HOST:PORT, --udp HOST:PORT or --pty LINK"
+        )
+    addresses = [("tcp", address) for address in tcp] + [("udp", address) for address in udp]
+    addresses += [
+        ("discovery", address if ":" in address else f"{address}:{MODULE_PORT}") for address in discovery
+    ]
     if replay is not None:
         from fatektool.cli.tools.replay import open_replay, tell_unknown
 
         speed = 1.0 if replay_speed is None else replay_speed
         recorded = open_replay(replay, protocol, speed, click.get_current_context(), voice)
         try:
-            _serve(recorded, voice, doors, pty)
+            _serve(recorded, voice, addresses, pty)
         finally:
             tell_unknown(recorded, voice)
         return
@@ -186,7 +190,7 @@ def simulate_command(
         for flag in flags:
             setattr(plc, flag, True)
     try:
-        _serve(simulation, voice, doors, pty, baud if strict_baud else None)
+        _serve(simulation, voice, addresses, pty, baud if strict_baud else None)
     finally:
         simulation.save_if_changed()
 
@@ -220,7 +224,7 @@ def _require_effects(protocol: str, baud: int | None, faults: tuple[str, ...]) -
 def _serve(
     lines: Lines,
     voice: Voice,
-    doors: list[tuple[str, str]],
+    addresses: list[tuple[str, str]],
     links: tuple[str, ...],
     pty_baud: int | None = None,
 ) -> None:
@@ -228,13 +232,13 @@ def _serve(
     signal.signal(signal.SIGTERM, lambda *_: server.stop())
     try:
         make = {"tcp": server.open_tcp, "udp": server.open_udp, "discovery": server.open_discovery}
-        opened = [make[kind](*_host_and_port(text)) for kind, text in doors]
+        opened = [make[kind](*_host_and_port(text)) for kind, text in addresses]
         opened += [server.open_pty(link, pty_baud) for link in links]
         if voice.json:
-            print_json(simulate_document(door.address for door in opened))
+            print_json(simulate_document(listener.address for listener in opened))
         else:
-            for door in opened:
-                click.echo(f"listening {door.address}")
+            for listener in opened:
+                click.echo(f"listening {listener.address}")
         sys.stdout.flush()
         server.serve_until()
     finally:
@@ -247,7 +251,7 @@ def _bits_per_char(line_format: str) -> float:
 
 
 def _host_and_port(text: str) -> tuple[str, int]:
-    match = _DOOR.fullmatch(text)
+    match = _ADDRESS.fullmatch(text)
     if match is None or int(match[3] or match[4]) > 65535:
-        raise UsageError(f"door {text[:60]!r}: expected HOST:PORT, such as 127.0.0.1:5000")
+        raise UsageError(f"address {text[:60]!r}: expected HOST:PORT, such as 127.0.0.1:5000")
     return match[1] or match[2] or "127.0.0.1", int(match[3] or match[4])

@@ -1,4 +1,4 @@
-"""A door at which the simulator answers as an Ethernet module does that is looked for by UDP.
+"""A listener that answers as an Ethernet module does that is looked for by UDP.
 
 What an answer holds at which place is not known. So this one has the length and the two port numbers of a
 real one, and says in words that it is a simulator's.
@@ -11,10 +11,10 @@ import selectors
 import socket
 from typing import TYPE_CHECKING
 
-from fatektool.simulator.listen.listeners import address_of, bound
+from fatektool.simulator.listen.sockets import address_of, bound
 
 if TYPE_CHECKING:
-    from fatektool.simulator.listen.servers import Server
+    from fatektool.simulator.listen.reactor import Reactor
 
 ANSWER_PORT = 53238
 _REQUESTS = {
@@ -28,27 +28,27 @@ ANSWER = _WORDS.ljust(_LENGTH - len(_PORTS), b"\0") + _PORTS
 _READ_BYTES = 2048
 
 
-class DiscoveryDoor:
+class DiscoveryListener:
     """A UDP socket that answers the two requests, to the port that is known for it.
 
     Args:
-        server: serves it.
+        reactor: serves it.
         host: where it listens.
         port: 111, as real ones; 0 for a free one.
         answer_port: to which the answers go.
     """
 
-    def __init__(self, server: Server, host: str, port: int, answer_port: int) -> None:
-        self._server = server
+    def __init__(self, reactor: Reactor, host: str, port: int, answer_port: int) -> None:
+        self._reactor = reactor
         self._answer_port = answer_port
         self._socket = bound(socket.SOCK_DGRAM, "discovery", host, port)
         self.address = address_of("discovery", self._socket)
-        server.selector.register(self._socket, selectors.EVENT_READ, self._on_ready)
+        reactor.selector.register(self._socket, selectors.EVENT_READ, self._on_ready)
 
     def _on_ready(self, _events: int) -> None:
         with contextlib.suppress(OSError):
             data, sender = self._socket.recvfrom(_READ_BYTES)
-            if data in _REQUESTS and self._server.simulation.powered:
+            if data in _REQUESTS and self._reactor.lines.powered:
                 self._socket.sendto(ANSWER, (sender[0], self._answer_port, *sender[2:]))
 
     def lose_power(self) -> None:
@@ -57,5 +57,5 @@ class DiscoveryDoor:
     def close(self) -> None:
         """Close the socket; twice is fine."""
         if self._socket.fileno() >= 0:
-            self._server.selector.unregister(self._socket)
+            self._reactor.selector.unregister(self._socket)
             self._socket.close()

@@ -1,14 +1,14 @@
-"""A pseudo terminal as a door: to its client it is a serial port. POSIX only.
+"""A pseudo terminal as a listener: to its client it is a serial port. POSIX only.
 
 ::
 
     client ── link ──> /dev/pts/7 (slave end) ═══ master end ── line ──> PLCs
 
-The door keeps the slave end open itself, so that a client that closes the port hangs nothing up and
+The listener keeps the slave end open itself, so that a client that closes the port hangs nothing up and
 the next one finds it as it was. When answers fill the terminal's buffer and nobody reads them, the next
 request drops them, as a serial port overruns: whoever asks again has given up what came before.
 
-The link is a symbolic link in a place that the user names; see ``pty_link``.
+The link is a symbolic link in a place that the user names; see ``pty_symlink``.
 """
 
 from __future__ import annotations
@@ -31,30 +31,30 @@ else:
     PTY_SUPPORTED = LOCKS_SUPPORTED
 
 if TYPE_CHECKING:
-    from fatektool.simulator.listen.listeners import Line
-    from fatektool.simulator.listen.servers import Server
+    from fatektool.simulator.listen.base import ServedLine
+    from fatektool.simulator.listen.reactor import Reactor
 
 _READ_BYTES = 65536
 _OUTPUT_SPEED = 5
 """The place of a terminal's speed among its attributes: the client's setting, seen from this end."""
 
 
-class PtyDoor:
+class PtyListener:
     """A pseudo terminal behind a link.
 
     Args:
-        server: whose reactor watches it.
+        reactor: watches it.
         link: the path that clients open; it is made, and removed at the end.
         baud: the only speed that is understood, as on a real line; None for any.
     """
 
-    def __init__(self, server: Server, link: str | os.PathLike[str], baud: int | None = None) -> None:
+    def __init__(self, reactor: Reactor, link: str | os.PathLike[str], baud: int | None = None) -> None:
         if not PTY_SUPPORTED:
             raise LineError(
                 f"cannot open {os.fspath(link)}: there are no pseudo terminals here", hint="use TCP"
             )
         self._speed = None if baud is None else _speed(baud)
-        self._server = server
+        self._reactor = reactor
         self._closed = False
         self._link = PtyLink(link)
         self.address = str(self._link.path)
@@ -71,10 +71,10 @@ class PtyDoor:
             raise
         for end in (self._master, self._slave):
             os.set_blocking(end, False)
-        self._line: Line = server.simulation.line()
+        self._line: ServedLine = reactor.lines.line()
         self._backlog = bytearray()
         self._events = selectors.EVENT_READ
-        server.selector.register(self._master, self._events, self._on_ready)
+        reactor.selector.register(self._master, self._events, self._on_ready)
 
     def _on_ready(self, events: int) -> None:
         if events & selectors.EVENT_WRITE:
@@ -86,7 +86,7 @@ class PtyDoor:
                     self._drop_unread()
                 if self._speed not in {None, termios.tcgetattr(self._master)[_OUTPUT_SPEED]}:
                     return  # at another speed there is nothing but framing errors
-                self._server.dispatch(self._line.receive(data, self._server.now()), self._deliver)
+                self._reactor.dispatch(self._line.receive(data, self._reactor.now()), self._deliver)
 
     def _deliver(self, data: bytes) -> None:
         if not self._closed:
@@ -99,7 +99,7 @@ class PtyDoor:
         events = selectors.EVENT_READ | (selectors.EVENT_WRITE if self._backlog else 0)
         if events != self._events:
             self._events = events
-            self._server.selector.modify(self._master, events, self._on_ready)
+            self._reactor.selector.modify(self._master, events, self._on_ready)
 
     def _drop_unread(self) -> None:
         # By reading, as flushing leaves what the kernel has not yet handed on to the terminal. A client
@@ -118,7 +118,7 @@ class PtyDoor:
         if self._closed:
             return
         self._closed = True
-        self._server.selector.unregister(self._master)
+        self._reactor.selector.unregister(self._master)
         self._close_ends()
 
     def _close_ends(self) -> None:

@@ -128,8 +128,8 @@ def test_a_port_in_use(cli: Cli) -> None:
 @pytest.mark.parametrize(
     ("code", "words", "message"),
     [
-        (2, "", "no door named; give --tcp HOST:PORT, --udp HOST:PORT or --pty LINK"),
-        (2, "--tcp here", "door 'here': expected HOST:PORT, such as 127.0.0.1:5000"),
+        (2, "", "no address to listen on; give --tcp HOST:PORT, --udp HOST:PORT or --pty LINK"),
+        (2, "--tcp here", "address 'here': expected HOST:PORT, such as 127.0.0.1:5000"),
         (2, "--tcp 127.0.0.1:65536", "expected HOST:PORT"),
         (2, "--tcp 127.0.0.1:" + "9" * 5000, "expected HOST:PORT"),
         (2, "--tcp :0 --fault nope=1", "no fault 'nope=1': write KIND=P"),

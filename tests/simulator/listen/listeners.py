@@ -1,4 +1,4 @@
-"""Clients for the tests of doors: sockets of this process, to a server in a thread."""
+"""Clients for the tests of listeners: sockets of this process, to a server in a thread."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from tests.simulator.wire import frame
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from fatektool.simulator.listen.listeners import Door
+    from fatektool.simulator.listen.base import Listener
 
 ASK, ANSWER = frame("4601R00007"), frame("4600000")
 PAGE_HEX = "AB" * 128
 
 
-def place(door: Door) -> tuple[str, int]:
-    host, _, port = door.address.partition("://")[2].rpartition(":")
+def place(listener: Listener) -> tuple[str, int]:
+    host, _, port = listener.address.partition("://")[2].rpartition(":")
     return host.strip("[]"), int(port)
 
 
 @contextmanager
-def connected(door: Door) -> Iterator[socket.socket]:
-    with socket.create_connection(place(door), timeout=GUARD_S) as client:
+def connected(listener: Listener) -> Iterator[socket.socket]:
+    with socket.create_connection(place(listener), timeout=GUARD_S) as client:
         client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         yield client
 
@@ -40,8 +40,8 @@ def read(client: socket.socket, count: int) -> bytes:
 
 
 @contextmanager
-def tcp(**arguments: object) -> Iterator[tuple[Server, Door]]:
+def tcp(**arguments: object) -> Iterator[tuple[Server, Listener]]:
     server = Server(build_simulation(**arguments))  # type: ignore[arg-type]
-    door = server.open_tcp()
+    listener = server.open_tcp()
     with running(server):
-        yield server, door
+        yield server, listener

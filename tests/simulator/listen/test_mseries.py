@@ -1,4 +1,4 @@
-"""M-series through real doors: a socket, datagrams, a serial port on a pty; and spoiled on the way."""
+"""M-series through real listeners: a socket, datagrams, a serial port on a pty; and spoiled on the way."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ LOOPBACK = framed(b"\x01\x4e" + bytes(range(256)))
 
 
 def test_tcp() -> None:
-    with tcp(protocol="mseries") as (_, door), connected(door) as client:
+    with tcp(protocol="mseries") as (_, listener), connected(listener) as client:
         client.sendall(ASK * 100)
         assert read(client, 100 * len(ANSWER)) == ANSWER * 100
         for at in range(len(LOOPBACK)):
@@ -32,7 +32,7 @@ def test_tcp() -> None:
         assert read(client, len(LOOPBACK)) == b"\x52" + LOOPBACK[1:]
         client.sendall(b"\x51\x10\x01\x00\x55\xaa" + request("40", station=9) + ASK + ASK[:5])
         assert read(client, len(ANSWER)) == ANSWER
-        with connected(door) as other:
+        with connected(listener) as other:
             other.sendall(request("4701'R'00071234"))
             assert read(other, len(reply("4700"))) == reply("4700")
         client.sendall(ASK[5:])
@@ -41,13 +41,13 @@ def test_tcp() -> None:
 
 def test_udp() -> None:
     server = Server(build_simulation(protocol="mseries", baud=115200))
-    door = server.open_udp()
+    listener = server.open_udp()
     with running(server), socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as client:
         client.settimeout(GUARD_S)
-        client.sendto(ASK[:6], place(door))
-        client.sendto(LOOPBACK, place(door))
+        client.sendto(ASK[:6], place(listener))
+        client.sendto(LOOPBACK, place(listener))
         assert client.recv(1000) == b"\x52" + LOOPBACK[1:]
-        client.sendto(ASK, place(door))
+        client.sendto(ASK, place(listener))
         assert client.recv(1000) == ANSWER
 
 

@@ -60,8 +60,8 @@ def terminal(link: Path) -> Iterator[int]:
 @needs_pty
 def test_pty_survives_its_clients(link: Path) -> None:
     server = Server(build_simulation())
-    door = server.open_pty(link)
-    assert door.address == str(link)
+    listener = server.open_pty(link)
+    assert listener.address == str(link)
     with running(server):
         for _ in range(5):
             with terminal(link) as client:
@@ -78,8 +78,8 @@ def test_a_pty_without_power_is_silent_and_stays(link: Path) -> None:
     simulation = build_simulation(faults=["power-cut=1"])
     server = Server(simulation)
     server.open_pty(link)
-    door = server.open_tcp()
-    with running(server), terminal(link) as client, connected(door) as witness:
+    listener = server.open_tcp()
+    with running(server), terminal(link) as client, connected(listener) as witness:
         write_all(client, frame("500000" + PAGE_HEX) + ASK)
         assert read(witness, 1) == b""  # the power is gone
         simulation.power_on()
@@ -117,10 +117,10 @@ def test_a_link_of_a_dead_simulator_is_replaced(link: Path) -> None:
     subprocess.run([sys.executable, "-c", code, str(link)], check=False, timeout=GUARD_S)
     assert link.is_symlink()
     with closing(Server(build_simulation())) as server:
-        door = server.open_pty(link)
+        listener = server.open_pty(link)
         assert link.exists()
-        door.close()
-        door.close()
+        listener.close()
+        listener.close()
     assert list(link.parent.iterdir()) == []
 
 

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 
 def test_tcp() -> None:
-    with tcp() as (_, door), connected(door) as client:
-        assert door.address.startswith("tcp://127.0.0.1:")
+    with tcp() as (_, listener), connected(listener) as client:
+        assert listener.address.startswith("tcp://127.0.0.1:")
         for _ in range(3):
             client.sendall(ASK)
             assert read(client, len(ANSWER)) == ANSWER
@@ -35,7 +35,7 @@ def test_tcp() -> None:
 
 
 def test_connections_share_the_plc_and_not_the_framing() -> None:
-    with tcp() as (_, door), connected(door) as one, connected(door) as other:
+    with tcp() as (_, listener), connected(listener) as one, connected(listener) as other:
         one.sendall(ASK[:5])
         other.sendall(frame("4701R000071234"))
         assert read(other, 9) == frame("470")
@@ -45,16 +45,16 @@ def test_connections_share_the_plc_and_not_the_framing() -> None:
 
 def test_a_client_that_closes_its_half_still_hears_the_answer() -> None:
     # At this pace the answer is long not due when the end of the requests is seen.
-    with tcp(baud=115200) as (_, door), connected(door) as client:
+    with tcp(baud=115200) as (_, listener), connected(listener) as client:
         client.sendall(frame("4F0000"))
         client.shutdown(socket.SHUT_WR)
         assert len(read(client, 1000)) == 265
 
 
 def test_a_client_that_goes_leaves_the_others() -> None:
-    with tcp(baud=921600) as (_, door), connected(door) as stays:
+    with tcp(baud=921600) as (_, listener), connected(listener) as stays:
         for _ in range(5):
-            with connected(door) as goes:
+            with connected(listener) as goes:
                 goes.sendall(frame("4F0000") * 20)
         stays.sendall(ASK)
         assert read(stays, len(ANSWER)) == ANSWER
@@ -62,7 +62,7 @@ def test_a_client_that_goes_leaves_the_others() -> None:
 
 @pytest.mark.parametrize("baud", [None, 1e9])
 def test_a_client_that_does_not_read_is_held_back(baud: float | None) -> None:
-    with tcp(baud=baud) as (_, door), connected(door) as client, connected(door) as other:
+    with tcp(baud=baud) as (_, listener), connected(listener) as client, connected(listener) as other:
         for buffer in (socket.SO_SNDBUF, socket.SO_RCVBUF):
             client.setsockopt(socket.SOL_SOCKET, buffer, 1 << 18)
         requests = frame("4F0000") * 1000
@@ -77,14 +77,14 @@ def test_a_client_that_does_not_read_is_held_back(baud: float | None) -> None:
 
 
 def test_an_answer_larger_than_the_buffers_comes_whole() -> None:
-    with tcp() as (_, door), connected(door) as client:
+    with tcp() as (_, listener), connected(listener) as client:
         client.sendall(frame("4F0000") * 3000)
         assert len(read(client, 3000 * 265)) == 3000 * 265
 
 
 @pytest.mark.parametrize("baud", [None, 921600.0])
 def test_paced_and_not(baud: float | None) -> None:
-    with tcp(baud=baud, faults=["duplicate=1"]) as (_, door), connected(door) as client:
+    with tcp(baud=baud, faults=["duplicate=1"]) as (_, listener), connected(listener) as client:
         page = frame("4F0001")
         expected = frame("4F0" + build_simulation().plcs[1].pages[1].hex().upper())
         for _ in range(5):
@@ -94,7 +94,7 @@ def test_paced_and_not(baud: float | None) -> None:
 
 def test_a_wait_without_a_descriptor(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(selectors, "DefaultSelector", selectors.SelectSelector)
-    with tcp(baud=115200) as (_, door), connected(door) as client:
+    with tcp(baud=115200) as (_, listener), connected(listener) as client:
         client.sendall(ASK)
         assert read(client, len(ANSWER)) == ANSWER
 
@@ -104,42 +104,42 @@ def test_a_wait_with_a_descriptor_that_select_cannot_name(monkeypatch: pytest.Mo
     def refuse(*_: object) -> None:
         raise ValueError
 
-    monkeypatch.setattr("fatektool.simulator.listen.servers.select.select", refuse)
-    with tcp(baud=115200) as (_, door), connected(door) as client:
+    monkeypatch.setattr("fatektool.simulator.listen.reactor.select.select", refuse)
+    with tcp(baud=115200) as (_, listener), connected(listener) as client:
         client.sendall(ASK)
         assert read(client, len(ANSWER)) == ANSWER
 
 
 def test_udp() -> None:
     server = Server(build_simulation(baud=921600))
-    door = server.open_udp()
+    listener = server.open_udp()
     with running(server), socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as client:
         client.settimeout(GUARD_S)
-        assert door.address.startswith("udp://127.0.0.1:")
+        assert listener.address.startswith("udp://127.0.0.1:")
         # A datagram stands by itself: neither half is a request, and nothing is left of them.
         for data in (ASK[:5], ASK[5:], ASK + ASK):
-            client.sendto(data, place(door))
+            client.sendto(data, place(listener))
         assert [client.recv(1000), client.recv(1000)] == [ANSWER, ANSWER]
-        client.sendto(frame("4F0000"), place(door))
+        client.sendto(frame("4F0000"), place(listener))
         assert len(client.recv(1000)) == 265
 
 
 def test_udp_answers_the_sender() -> None:
     server = Server(build_simulation())
-    door = server.open_udp()
+    listener = server.open_udp()
     with running(server):
         for _ in range(100):
             with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as client:
                 client.settimeout(GUARD_S)
-                client.sendto(ASK, place(door))
+                client.sendto(ASK, place(listener))
                 assert client.recv(1000) == ANSWER
 
 
 def test_power_cut_closes_connections_and_refuses_new_ones() -> None:
     simulation = build_simulation(faults=["power-cut=2"])
     server = Server(simulation)
-    doors = [server.open_tcp(), server.open_tcp()]
-    with running(server), connected(doors[0]) as client, connected(doors[1]) as other:
+    listeners = [server.open_tcp(), server.open_tcp()]
+    with running(server), connected(listeners[0]) as client, connected(listeners[1]) as other:
         client.sendall(frame("500000" + PAGE_HEX))
         assert read(client, 9) == frame("500")
         other.sendall(ASK)
@@ -147,10 +147,10 @@ def test_power_cut_closes_connections_and_refuses_new_ones() -> None:
         client.sendall(frame("500001" + PAGE_HEX) + ASK)
         assert read(client, 100) == b""
         assert read(other, 100) == b""
-        with connected(doors[0]) as refused:
+        with connected(listeners[0]) as refused:
             assert read(refused, 100) == b""
         simulation.power_on()
-        with connected(doors[0]) as again:
+        with connected(listeners[0]) as again:
             again.sendall(ASK)
             assert read(again, len(ANSWER)) == ANSWER
 
@@ -175,12 +175,12 @@ def test_a_port_in_use_is_one_clear_line() -> None:
 def test_an_ipv6_address_in_words() -> None:
     with closing(Server(build_simulation())) as server:
         try:
-            door = server.open_tcp("::1", 0)
+            listener = server.open_tcp("::1", 0)
         except LineError:
             pytest.skip("no IPv6 address here")
-        assert door.address.startswith("tcp://[::1]:")
+        assert listener.address.startswith("tcp://[::1]:")
         with pytest.raises(LineError, match=r"tcp://\[::1\]:"):
-            server.open_tcp(*place(door))
+            server.open_tcp(*place(listener))
 
 
 def test_stop_before_serving_and_a_predicate() -> None:
@@ -192,9 +192,9 @@ def test_stop_before_serving_and_a_predicate() -> None:
 
 
 def test_close_gives_the_port_back() -> None:
-    with tcp() as (_, door):
-        address = place(door)
-        with connected(door) as client:
+    with tcp() as (_, listener):
+        address = place(listener)
+        with connected(listener) as client:
             client.sendall(ASK)
             assert read(client, len(ANSWER)) == ANSWER
     with pytest.raises(OSError, match=r"."), socket.create_connection(address, timeout=GUARD_S):
@@ -205,12 +205,12 @@ def test_a_failure_of_the_thread_is_not_lost(tmp_path: Path) -> None:
     folder = tmp_path / "plc"
     folder.mkdir()
     server = Server(build_simulation(state=folder / "state.json"))
-    door = server.open_tcp()
+    listener = server.open_tcp()
     (folder / "state.json").unlink()
     folder.rmdir()
     failing = running(server)
     failing.__enter__()
-    with connected(door) as client:
+    with connected(listener) as client:
         client.sendall(frame("411"))
         assert read(client, 1) == b""
     with pytest.raises(DataError, match="cannot be written"):

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from fatektool.simulator.listen.listeners import Line
+    from fatektool.simulator.listen.base import ServedLine
 
 Pieces = list[tuple[float, bytes]]
 
@@ -55,7 +55,7 @@ class ScriptedModem:
     """
 
     calls: list[str] = field(default_factory=lambda: ["CONNECT 9600"])
-    plc: Line | None = None
+    plc: ServedLine | None = None
     answers: dict[str, str | bytes] = field(default_factory=dict)
     dead: bool = False
     echo: bool = True
@@ -81,7 +81,7 @@ class ScriptedModem:
 
     # --- as the simulator's doors want it -------------------------------------------------------------
 
-    def line(self, *, whole_answers: bool = False) -> Line:
+    def line(self, *, whole_answers: bool = False) -> ServedLine:
         assert not whole_answers, "a modem hangs on a stream"
         return self
 

@@ -170,7 +170,7 @@ def test_a_port_that_is_pulled_out_during_a_call(place: Path, cli: Cli) -> None:
         def receive(self, data: bytes, now: float) -> list[tuple[float, bytes]]:
             assert data
             assert now
-            server[0].doors[0].close()
+            server[0].listeners[0].close()
             return []
 
         datagram = receive
