@@ -11,6 +11,8 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from figures import figure
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -85,6 +87,7 @@ def row(name: str, tool_took: Timing, bare_took: Timing, limit: float, wire_s: f
     """One line of a table, with the limit beside the ratio, and how much of the time the line was in use."""
     transfer = tool_took.transfer_s / bare_took.transfer_s
     process = tool_took.process_s / bare_took.process_s
+    figure(f"{name}, transfer", transfer, limit=limit)
     use = f"  wire/tool {wire_s / tool_took.transfer_s:.3f}" if wire_s else ""
     return (
         f"{name:<30} bare {bare_took.transfer_s:8.3f} s  tool {tool_took.transfer_s:8.3f} s  "

@@ -13,6 +13,8 @@ import timeit
 from operator import attrgetter, methodcaller
 from typing import TYPE_CHECKING, Any
 
+from figures import figure
+
 from fatektool.protocol.commands import Loopback, ReadBriefStatus, ReadRegisters, Request, WriteRegisters
 from fatektool.protocol.elements import Element
 from fatektool.protocol.fatek.mseries.codec import MSERIES
@@ -84,6 +86,7 @@ def main() -> None:
         times = {way: took(function, checked) for way, function in ways.items()}
         shown = "  ".join(f"{way} {1e6 * seconds:.2f}" for way, seconds in times.items())
         size = f"{len(raw)} bytes, {1e6 * wire_s:.0f} us"
+        figure(f"CRC, {name}", times["table"] / wire_s, limit=LIMIT)
         print(f"{name:<19} {size:<18}  {shown} us  ratio {times['table'] / wire_s:.4f}  limit {LIMIT}")
 
 

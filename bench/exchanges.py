@@ -45,14 +45,20 @@ def backup(pages: int) -> list[Exchange]:
     return [*status(), *reading(pages), *reading(pages)]
 
 
+def known(pages: int, again: Sequence[int]) -> list[Exchange]:
+    """The capacity, all pages once, and those that differ from the file once more."""
+    found = [*status(), *reading(pages)]
+    return [*found, *(ask(f"4F{page:04X}", 1 + PAGE_DIGITS) for page in again)]
+
+
 def verify(pages: int) -> list[Exchange]:
     """The capacity, and all pages once."""
     return [*status(), *reading(pages)]
 
 
-def restore(pages: int, changed: Sequence[tuple[int, bytes]]) -> list[Exchange]:
-    """The old program twice, the pages to write, and all read back."""
-    return [*backup(pages), *writing(changed), *reading(pages)]
+def restore(pages: int, differ: Sequence[int], changed: Sequence[tuple[int, bytes]]) -> list[Exchange]:
+    """The present program, what is not in the file a second time, the pages to write, and all read back."""
+    return [*known(pages, differ), *writing(changed), *reading(pages)]
 
 
 def snapshot() -> list[Exchange]:

@@ -31,6 +31,7 @@ from typing import NamedTuple
 from bare_loop import loop
 from common import pinned, simulators
 from exchanges import reading
+from figures import figure
 
 WORDS = 8192
 PAGES = 129
@@ -151,6 +152,7 @@ def main() -> None:
     for plcs in wanted.plcs:
         ratio, mb = row(plcs, wanted.jobs, first_mb)
         worst, first_mb = max(worst, ratio), mb if first_mb is None else first_mb
+    figure("fleet, worst to the greater of bound and bare loop", worst, limit=LIMIT)
     print(f"worst of them, to the greater of bound and bare loop: {worst:.3f}  limit {LIMIT}")
     if worst > LIMIT:
         raise SystemExit(1)

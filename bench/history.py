@@ -33,6 +33,7 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from common import pinned
+from figures import figure
 
 from fatektool.files.atomic import sync_folder, write_synced
 from fatektool.history.checking import check
@@ -246,6 +247,7 @@ def main() -> None:
         commits = sum(night.records[True] for night in found)
         print(f"{plcs} PLCs, {count} nights, {plcs * count} records, {commits} commits")
         growth = report(found)
+        figure("history, a record of the last third to one of the first", growth, limit=LIMIT_GROWTH)
         print(f"a record of the last third to one of the first, by ratio: {growth:.2f}  limit {LIMIT_GROWTH}")
         print(
             f"on disk {size_of(place)}, {sum(p.stat().st_size for p in place.rglob('*')) // commits} a commit"

@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
+from figures import figure
+
 from fatektool.ladder.differences import compare_code
 from fatektool.ladder.networks import Code
 from fatektool.project.file import Project
@@ -67,6 +69,7 @@ def main() -> int:
         taken = best(lambda other=other: compare_code(Code.of(words), Code.of(other)))  # type: ignore[misc]
         found = len(compare_code(Code.of(words), Code.of(other)))
         slow |= taken >= LIMIT_S
+        figure(f"read and compare, {name}", taken, "s", LIMIT_S)
         print(f"read and compare  {name:<24} {found:>5} differ  {taken:.3f} s  limit {LIMIT_S:.0f}")
     image = image_of(much_code(FULL))
     data = project(image, FBS)

@@ -25,6 +25,7 @@ from statistics import mean
 from typing import TYPE_CHECKING, NamedTuple
 
 from common import simulator
+from figures import figure
 
 import fatektool
 from fatektool.jobs.elements.reads import read_elements
@@ -98,6 +99,7 @@ def behind(adapter: str, baud: int, folder: Path) -> dict[str, Took]:
 def row(baud: int, name: str, took: dict[str, Took]) -> str:
     """One line of the table."""
     off, on, none = (took[adapter] for adapter in ADAPTERS)
+    figure(f"{baud} {name}, off to on", off.seconds / on.seconds)
     adds_off, adds_on = ((one.seconds - none.seconds) / none.exchanges * 1000 for one in (off, on))
     return (
         f"{baud:6} baud  {name:<17} {none.exchanges:3.0f} exchanges  "

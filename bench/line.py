@@ -16,6 +16,7 @@ from pathlib import Path
 
 import exchanges
 from common import Timing, bare, best, row, simulator, tool
+from figures import figure
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
@@ -27,6 +28,8 @@ WORDS = {9600: 4096, 38400: 8192, 115200: 13184, 921600: 65535}
 RUNS = {921600: 4, 115200: 2}
 BITS = 10  # 7E1
 CHANGED = 10  # one page in so many
+NIGHT_BAUD = 9600
+NIGHT_PAGES = 207
 
 
 class Bench:
@@ -46,7 +49,8 @@ class Bench:
         self.old = first.program.pages
         self.new = second.program.pages
         some = [new if number % CHANGED == 1 else old for number, (old, new) in enumerate(self._pairs())]
-        programs = {"old": self.old, "new": self.new, "some": tuple(some)}
+        one = (self.old[0], self.new[1], *self.old[2:])
+        programs = {"old": self.old, "new": self.new, "some": tuple(some), "one": one}
         self.files = {name: str(folder / f"{name}.json") for name in programs}
         for name, pages in programs.items():
             changed = replace(first, program=Program(first.program.ladder_words, pages))
@@ -65,12 +69,17 @@ class Bench:
         some = [(number, self.old[number]) for number in differ if number % CHANGED == 1]
         restore = ["restore", "--yes"]
         return {
-            "backup": (["backup", self.backup, "--force"], exchanges.backup(pages)),
+            "backup, first": (["backup", self.backup], exchanges.backup(pages)),
+            "backup, unchanged": (["backup", self.backup, "--force"], exchanges.known(pages, [])),
+            "backup, one page changed": (
+                ["backup", self.backup, "--known", self.files["one"], "--force"],
+                exchanges.known(pages, [1]),
+            ),
             "verify": (["verify", self.files["old"]], exchanges.verify(pages)),
-            "restore": ([*restore, self.files["new"]], exchanges.restore(pages, every)),
+            "restore": ([*restore, self.files["new"]], exchanges.restore(pages, differ, every)),
             "restore --changed-only": (
                 [*restore, "--changed-only", self.files["some"]],
-                exchanges.restore(pages, some),
+                exchanges.restore(pages, [number for number, _ in some], some),
             ),
             "snapshot --all": (["snapshot", "--all", "-o", self.snapshot], exchanges.snapshot()),
         }
@@ -82,10 +91,16 @@ class Bench:
             bares: list[Timing] = []
             tools: list[Timing] = []
             for _ in range(RUNS.get(self.baud, 1)):
+                if name == "backup, first":
+                    Path(self.backup).unlink(missing_ok=True)
                 tools.append(tool(*words, "-p", self.target, "--baud", str(self.baud)))
                 bares.append(bare(self.target, todo))
             wire_s = exchanges.wire_bytes(todo) * BITS / self.baud
             print(row(f"{self.baud} {name}", best(tools), best(bares), limit, wire_s), flush=True)
+            if self.baud == NIGHT_BAUD and name.startswith("backup"):
+                night = best(tools).transfer_s * NIGHT_PAGES / len(self.old)
+                print(f"a night of {NIGHT_PAGES} pages at {self.baud} baud, {name}: {night:.0f} s")
+                figure(f"{name}, {NIGHT_PAGES} pages at {self.baud} baud", night, "s")
 
 
 def program(words: int, seed: int, folder: Path) -> Backup:

@@ -10,6 +10,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
+from figures import figure
+
 from tests.reliability.damage import DAMAGES, count
 
 ANSWERS = 200_000
@@ -22,6 +24,7 @@ def main() -> None:
     for name, damage in DAMAGES.items():
         found = count(damage, answers, SEED)
         share = f"1 in {found.damaged / found.passed:.0f}" if found.passed else "none"
+        figure(f"{name}: alike in two passes, of {found.damaged}", found.same_twice, "pages", 0)
         print(
             f"{name:<22} damaged {found.damaged:>8}  passed {found.passed:>6} ({share})  "
             f"both passes {found.passed_twice:>4}, alike {found.same_twice}  "

@@ -22,6 +22,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
+from figures import figure
+
 from fatektool.planner import plan_reads, plan_writes, turnaround_bytes
 from fatektool.protocol.elements import Element
 from fatektool.protocol.fatek.facon.codec import FACON
@@ -138,6 +140,7 @@ class Against(NamedTuple):
     def show(self, name: str) -> bool:
         """Print a line; False if a plan costs too much."""
         print(f"{name:<34} reads {self.reads}; writes {self.writes}; gaps of 16 {self.plain}")
+        figure(f"{name}: cost over the best", max(self.reads.most, self.writes.most), limit=MOST_GAP)
         return max(self.reads.most, self.writes.most) <= MOST_GAP
 
 

@@ -29,6 +29,7 @@ from typing import TYPE_CHECKING, Any, Final
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
 from common import pinned, simulator
+from figures import figure
 
 from fatektool import connect
 from fatektool.exchange.batch import read_all
@@ -230,6 +231,8 @@ def row(name: str, part: str, target: str) -> str:
     for unit, measure, form in (("us", microseconds, "8.2f"), ("instructions", instructions, "8.0f")):
         bare, tool = (measure([side, part, name, target]) for side in ("bare", "tool"))
         if bare is not None and tool is not None:
+            limit = LIMIT if (name, part, unit) == ("facon 4F", "exchange", "instructions") else None
+            figure(f"{name} {part}, {unit}", tool / bare, limit=limit)
             text += f"  {unit}: bare {bare:{form}} tool {tool:{form}} ratio {tool / bare:.2f}"
     return text
 

@@ -32,6 +32,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from common import LARGEST, pinned, tool
+from figures import figure
 from questions import EVERY_STATION, PAGES, QUESTIONS, Question
 
 if TYPE_CHECKING:
@@ -197,6 +198,7 @@ def exchanges(question: Question, clients: int, seconds: float, *options: str, o
         bare_done, bare_took = run_clients([target] * clients, question, more)
     rate, bare = done / took, bare_done / bare_took
     where = "pty" if on_pty else f"{clients} x TCP"
+    figure(f"simulator, {question.name}, {where}", rate, "exchanges/s")
     print(
         f"{question.name:<27} {where:<9} {rate:7.0f} a second, {cpu_us:6.1f} us  "
         f"bare responder {bare:7.0f} a second  ratio {bare / rate:5.2f}",

@@ -30,6 +30,7 @@ from statistics import median
 from typing import TYPE_CHECKING, NamedTuple
 
 from common import simulator
+from figures import figure
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -124,6 +125,7 @@ def row(start: Start, took: list[float], bare: list[float]) -> tuple[str, bool]:
     """One line, and whether the limit is kept."""
     least, middle = min(took) / min(bare), median(took) / median(bare)
     limit = LIMITS.get(start.name)
+    figure(f"{start.name} {start.way}".strip(), least, limit=limit)
     times = f"least {min(took) * 1000:6.1f}  median {median(took) * 1000:6.1f} ms"
     ratios = f"ratio {least:.3f}  of medians {middle:.3f}"
     text = f"{start.name:<18} {start.way:<9}  {start.modules:3} modules  {times}  {ratios}"
