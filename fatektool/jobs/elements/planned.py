@@ -58,12 +58,15 @@ class PlannedValues:
         self._changes = changes
         self._status = status
         self._ledger = Ledger()
+        self._undone = Ledger()
+        self._read_back = False
+        self._doubtful: set[Element] = set()
         self.not_taken: list[NotTaken] = []
 
     @property
     def untouched(self) -> bool:
         """True if no value was written."""
-        return all(self._ledger.fate_of(change.element) is Fate.BEFORE for change in self._changes)
+        return all(self._fate_of(change.element) is Fate.BEFORE for change in self._changes)
 
     def prepare(self) -> None:
         """Check model and mode once more (40), where both are known.
@@ -100,6 +103,8 @@ class PlannedValues:
         progress("writing", 0, total)
         items = [(change.element, change.after) for change in self._changes]
         self.not_taken = write_elements(self._plc, items, self._ledger)
+        self._doubtful = {each.element for each in self.not_taken}
+        self._read_back = True
         progress("writing", total, total)
 
     def put_back(self, progress: Progress) -> None:
@@ -112,10 +117,10 @@ class PlannedValues:
         items = [
             (change.element, change.before)
             for change in self._changes
-            if self._ledger.fate_of(change.element) is not Fate.BEFORE
+            if self._fate_of(change.element) is not Fate.BEFORE
         ]
         progress("rolling back", 0, len(items))
-        failed = write_elements(self._plc, items)
+        failed = write_elements(self._plc, items, self._undone)
         progress("rolling back", len(items), len(items))
         if failed:
             names = named(str(each.element) for each in failed)
@@ -123,7 +128,10 @@ class PlannedValues:
 
     def states(self) -> list[tuple[str, str]]:
         """What the PLC holds of each value, in ranges."""
-        return [(named(spans), holds) for fate, (_, holds) in _STATES.items() if (spans := self._spans(fate))]
+        words = {fate: holds for fate, (_, holds) in _STATES.items()}
+        if self._read_back:
+            words[Fate.ACKNOWLEDGED] = "the new value"
+        return [(named(spans), holds) for fate, holds in words.items() if (spans := self._spans(fate))]
 
     def details(self) -> dict[str, Any]:
         """The same for scripts."""
@@ -131,7 +139,13 @@ class PlannedValues:
 
     def _spans(self, fate: Fate) -> list[str]:
         elements = (change.element for change in self._changes)
-        return _spans_of(element for element in elements if self._ledger.fate_of(element) is fate)
+        return _spans_of(element for element in elements if self._fate_of(element) is fate)
+
+    def _fate_of(self, element: Element) -> Fate:
+        """What is known of a value: nothing of one that did not take, or was being written back."""
+        if element in self._doubtful or self._undone.fate_of(element) is not Fate.BEFORE:
+            return Fate.UNCERTAIN
+        return self._ledger.fate_of(element)
 
 
 def _spans_of(elements: Iterable[Element]) -> list[str]:
