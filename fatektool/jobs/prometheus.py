@@ -1,12 +1,12 @@
 r"""Figures of PLCs as files for the textfile collector of Prometheus's node exporter.
 
-The collector reads all files of a folder as one: a series that stands in two of them makes it refuse both,
-and a metric has one help text in all. So each series bears the job that wrote it, and a snapshot's the name
-of its file or specification. Which of two jobs knows better shows in ``fatek_last_run_timestamp_seconds``.
+The collector reads all files of a folder as one: it refuses both files if a series is in two of them, and a
+metric has one help text in all. So each series has the label of its job, and that of a snapshot the name of
+its file or specification. ``fatek_last_run_timestamp_seconds`` shows which of two jobs ran last.
 
-The collector refuses time stamps on samples, so ages are told by time stamps of success as values: the age is
-``time() - fatek_last_success_timestamp_seconds``. Those of the former file are carried over, as a run that
-fails must not take away the memory of the last one that did not.
+The collector refuses time stamps on samples, so the time of the last success is a value: the age is
+``time() - fatek_last_success_timestamp_seconds``. The values of the former file are kept, as a run that fails
+must not remove the time of the last success.
 
 Source: Prometheus, "Exposition formats", text-based format: in a label's value ``\``, ``"`` and a line feed
 are written ``\\``, ``\"`` and ``\n``.

@@ -1,4 +1,4 @@
-"""What a PLC is and how it is: 40, and 53 unless only the brief status is wanted."""
+"""Model, mode and state of a PLC: 40, and 53 unless only the brief status is wanted."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class StatusReport:
         station: 1 to 254.
         protocol: ``facon`` or ``mseries``.
         brief: the answer to 40.
-        detailed: the answer to 53; None if it was not asked.
+        detailed: the answer to 53; None if it was not asked for.
     """
 
     time: str
@@ -36,7 +36,7 @@ class StatusReport:
 
     @property
     def system(self) -> System | None:
-        """What 53 tells; None if it was not asked, or nobody says what its answer means."""
+        """The answer to 53; None if it was not asked for, or its layout is not known."""
         return getattr(self.detailed, "system", None)
 
     @property
@@ -50,7 +50,7 @@ def read_status(plc: Plc, *, brief: bool = False) -> StatusReport:
 
     Args:
         plc: the PLC.
-        brief: 40 alone.
+        brief: only 40.
 
     Raises:
         LineError: no answer.

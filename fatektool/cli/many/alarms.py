@@ -1,4 +1,4 @@
-"""``--prometheus``, ``--on-change``, ``--on-failure``: who is told what became of the PLCs."""
+"""``--prometheus``, ``--on-change``, ``--on-failure``: metrics and commands for the outcome of each PLC."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ _FLAGS: Final = ("running", "battery_low", "ladder_checksum_error", "watchdog_ti
 
 @dataclass(slots=True)
 class Alarms:
-    """Who is told, and of what.
+    """The metrics file and the commands.
 
     Attributes:
         prometheus: the file for the textfile collector.
-        on_change: the command for another program.
-        on_failure: the command for what did not end well.
+        on_change: the command for a changed program.
+        on_failure: the command for a failure.
         lost: why the file could not be written; None if it was.
     """
 
@@ -51,7 +51,7 @@ class Alarms:
     _hangs: int = field(init=False, default=0)
 
     def notify(self, job: str, outcome: Outcome, voice: Voice) -> None:
-        """One PLC has ended: start the commands that are for such an outcome."""
+        """One PLC has ended: run the commands for its outcome."""
         if self.prometheus is not None:
             self._outcomes.append((job, outcome))
         if self.on_change is not None and outcome.result.changed:
@@ -62,11 +62,11 @@ class Alarms:
     def write(self, known: set[str], voice: Voice) -> None:
         """Write the Prometheus file, whole or not at all; ``lost`` is why, if it cannot be.
 
-        That is no error here: what became of the PLCs is still to be told.
+        That is no error here: the outcomes are still to be printed.
 
         Args:
-            known: the PLCs whose successes of former runs are kept.
-            voice: is told of other files that the collector would not take beside this one.
+            known: the PLCs whose last success is taken over from the former file.
+            voice: warns of other files that the collector would not accept together with this one.
         """
         if self.prometheus is not None:
             try:
@@ -83,13 +83,13 @@ class Alarms:
         write_whole(prometheus, text.encode(errors="backslashreplace"), overwrite=True, mode=_MODE)
         for name, series in doubled(text, _beside(prometheus)).items():
             voice.warn(
-                f"{prometheus.name} and {name} both have {series}: the node exporter takes neither; "
-                f"remove {name} if nothing writes it any more, or let one command write both"
+                f"{prometheus.name} and {name} both have {series}: the node exporter accepts neither; "
+                f"remove {name} if it is no longer used, or let one command write both"
             )
 
     def _run(self, command: tuple[str, ...], event: str, job: str, outcome: Outcome, voice: Voice) -> None:
         if self._hangs >= _MOST_HANGS:
-            voice.warn(f"{outcome.name}: {command[0]} is not started, as it hung {_MOST_HANGS} times before")
+            voice.warn(f"{outcome.name}: {command[0]} is not run: it timed out {_MOST_HANGS} times")
             return
         result = outcome.result
         happened = Event(
@@ -149,8 +149,8 @@ def alarm_options(*, changes: bool, place_first: bool = True) -> Callable[[F], F
     """The options; the command gets ``alarms``.
 
     Args:
-        changes: False for a job that compares nothing, and has no ``--on-change``.
-        place_first: False for a monitoring plugin, which asks the PLC whether its file can be written or not.
+        changes: False for a job that compares no programs, and has no ``--on-change``.
+        place_first: False for a monitoring plugin, which checks the PLC even if its file cannot be written.
     """
 
     def decorated(function: F) -> F:
@@ -158,12 +158,12 @@ def alarm_options(*, changes: bool, place_first: bool = True) -> Callable[[F], F
             "--prometheus",
             type=PATH,
             metavar="FILE.prom",
-            help="Also write the state of all for the textfile collector of the node exporter.",
+            help="Also write metrics for the textfile collector of the node exporter.",
         )
         @click.option(
             "--on-failure",
             metavar="CMD",
-            help="Start CMD for each PLC that is not well; FATEK_NAME, FATEK_MESSAGE and more tell it what.",
+            help="Run CMD for each PLC that is not ok; FATEK_NAME, FATEK_MESSAGE … are in its environment.",
         )
         @wraps(function)
         def with_alarms(
@@ -189,7 +189,7 @@ def alarm_options(*, changes: bool, place_first: bool = True) -> Callable[[F], F
             with_alarms = click.option(
                 "--on-change",
                 metavar="CMD",
-                help="Start CMD for each PLC whose program is another than before.",
+                help="Run CMD for each PLC whose program has changed.",
             )(with_alarms)
         return with_alarms  # type: ignore[return-value]  # click's decorators hand back what they get
 

@@ -36,24 +36,24 @@ if TYPE_CHECKING:
 @click.option(
     "--expect",
     type=click.Choice(EXPECTATIONS),
-    help="The mode it ought to be in.  [default: that of the inventory, else run]",
+    help="Expected mode.  [default: that of the inventory, else run]",
 )
 @click.option(
     "--reference",
     type=PATH,
     metavar="BACKUP",
-    help="The program that ought to be in it.  [default: that of the inventory]",
+    help="Expected program.  [default: that of the inventory]",
 )
-@click.option("--no-reference", is_flag=True, help="Do not read the program: a look of a moment.")
-@click.option("--backup", type=PATH, metavar="BACKUP", help="The last backup, which must be a good one.")
-@click.option("--max-age", metavar="AGE", help="How old that may be: 36h, 7d.")
+@click.option("--no-reference", is_flag=True, help="Do not compare the program, which takes time.")
+@click.option("--backup", type=PATH, metavar="BACKUP", help="The last backup, checked too.")
+@click.option("--max-age", metavar="AGE", help="Maximum age of the backup: 36h, 7d.")
 @click.option(
     "--deadline",
     type=Seconds(0, 86400, above=True),
     default=600.0,
     show_default=True,
     metavar="S",
-    help="How long it may take in all.",
+    help="Time limit.",
 )
 @alarm_options(changes=True, place_first=False)
 @connection_options
@@ -71,9 +71,8 @@ def check_command(
 ) -> int:
     """Check a PLC as a monitoring plugin: exit 0 OK, 1 WARNING, 2 CRITICAL, 3 UNKNOWN, and one line.
 
-    Looks at whether it answers, its mode, battery, ladder checksum, watchdog and emergency stop; whether a
-    restore or another write into it was left unfinished; whether its program is the reference; whether there
-    is a good backup, and how old.
+    Checked are: whether the PLC answers, its mode, battery, ladder checksum, watchdog and emergency stop;
+    unfinished restores and other writes; the program against the reference; the last backup and its age.
     """
     if max_age is not None and backup is None:
         raise UsageError("--max-age goes with --backup FILE")

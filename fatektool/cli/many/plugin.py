@@ -1,8 +1,7 @@
-"""The manners of a monitoring plugin: one line, ``FATEK STATE - words | figures``, and exit codes of its own.
+"""The output of a monitoring plugin: one line, ``FATEK STATE - words | figures``, and exit codes of its own.
 
-0 OK, 1 WARNING, 2 CRITICAL, 3 UNKNOWN; nothing else ever, as whoever reads it would take a 2 of the other
-commands (usage) for CRITICAL and a 5 (data) for an error of the plugin. So errors of any kind end here:
-UNKNOWN.
+0 OK, 1 WARNING, 2 CRITICAL, 3 UNKNOWN, and no others: the monitoring would take a 2 of the other commands
+(usage) for CRITICAL and a 5 (data) for an error of the plugin. So every error is UNKNOWN here.
 """
 
 from __future__ import annotations
@@ -35,7 +34,7 @@ class PluginCommand(click.Command):
             raise click.exceptions.Exit(unknown(error.format_message(), as_json=as_json)) from error
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run it; what goes wrong is UNKNOWN."""
+        """Run it; every error is UNKNOWN."""
         as_json = bool(ctx.params.get("as_json"))
         try:
             return super().invoke(ctx)
@@ -49,7 +48,7 @@ class PluginCommand(click.Command):
             return unknown("interrupted", as_json=as_json)
         except BrokenPipeError:
             raise
-        except Exception as error:  # noqa: BLE001  # whatever it is, as in the other commands
+        except Exception as error:  # noqa: BLE001  # no traceback, as in the other commands
             words = f"a fault of fatektool itself: {type(error).__name__}: {error}"
             return unknown(words, as_json=as_json)
 
@@ -62,7 +61,7 @@ def plugin_line(state: State, words: str, figures: Mapping[str, str]) -> str:
 
 
 def unknown(words: str, *, as_json: bool) -> int:
-    """Say that nothing can be said, and why; give the exit code."""
+    """Print UNKNOWN with its reason; give the exit code."""
     with contextlib.suppress(OSError):
         if as_json:
             print_json(check_document(State.UNKNOWN, words, None))

@@ -39,7 +39,7 @@ def status_document(report: StatusReport) -> dict[str, Any]:
 
 
 def _system(report: StatusReport) -> dict[str, Any] | None:
-    """What 53 told, marked where the layout is assumed, and as it came where there is none."""
+    """The answer to 53: marked if its layout is assumed, in hex if it has none."""
     from fatektool.protocol.status import DetailedStatus, RawStatus  # not before there is one
 
     match report.detailed:

@@ -1,4 +1,4 @@
-"""``run`` and ``stop``: what a machine does depends on it, so they ask."""
+"""``run`` and ``stop``: they change what a machine does, so they ask."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 @yes_option
 @connection_options
 def run_command(connection: Connection, voice: Voice, *, broadcast: bool, yes: bool) -> None:
-    """Let the PLC RUN (41), and read the mode back. The machine may move."""
+    """Put the PLC into RUN (41) and read the mode back. The machine may move."""
     _change(connection, voice, run=True, broadcast=broadcast, yes=yes)
 
 
@@ -34,7 +34,7 @@ def run_command(connection: Connection, voice: Voice, *, broadcast: bool, yes: b
 @yes_option
 @connection_options
 def stop_command(connection: Connection, voice: Voice, *, broadcast: bool, yes: bool) -> None:
-    """STOP the PLC (41), and read the mode back. The machine loses its control."""
+    """Put the PLC into STOP (41) and read the mode back. The machine is no longer controlled."""
     _change(connection, voice, run=False, broadcast=broadcast, yes=yes)
 
 
@@ -47,7 +47,9 @@ def _change(connection: Connection, voice: Voice, *, run: bool, broadcast: bool,
         try:
             here = with_status(plc, plc.brief_status())
         except PlcRefused as error:
-            raise PlcError(f"{mode} was not sent: the mode comes first, and {error.message}") from error
+            raise PlcError(
+                f"{mode} was not sent: the present mode cannot be read: {error.message}"
+            ) from error
         before = here.running
         if before != run:
             question = f"Station {here.station} on {here.target} is in {here.mode}. {mode}?"

@@ -1,4 +1,4 @@
-"""``status``: what a PLC is and how it is."""
+"""``status``: model, mode and state of a PLC."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
 
 @click.command("status", epilog="Example: fatektool status -p /dev/ttyUSB0")
-@click.option("--brief", is_flag=True, help="The brief status (40) alone: the shortest exchange there is.")
+@click.option("--brief", is_flag=True, help="Only the brief status (40), the shortest exchange.")
 @connection_options
 def status_command(connection: Connection, voice: Voice, *, brief: bool) -> None:
-    """Show what the PLC is and how it is (40 and 53)."""
+    """Show model, mode and state of the PLC (40 and 53)."""
     needs = (Command.BRIEF_STATUS,) if brief else (Command.BRIEF_STATUS, Command.DETAILED_STATUS)
     with connection.open(voice, needs=needs) as plc:
         report = read_status(plc, brief=brief)
@@ -34,7 +34,7 @@ def _rows(report: StatusReport) -> Iterator[tuple[str, object]]:
     flags = report.flags
     yield "PLC", f"station {report.station} on {report.target}"
     yield "mode", "RUN" if flags.running else "STOP"
-    yield "battery", "LOW: take a backup and a snapshot now, then change it" if flags.battery_low else "ok"
+    yield "battery", "LOW: take a backup and a snapshot now, then replace it" if flags.battery_low else "ok"
     yield "ladder checksum", "ERROR: restore a good backup" if flags.ladder_checksum_error else "ok"
     yield "watchdog", "TIMED OUT" if flags.watchdog_timeout else "ok"
     yield "emergency stop", "ACTIVE" if flags.emergency_stop else "no"
@@ -50,10 +50,13 @@ def _rows(report: StatusReport) -> Iterator[tuple[str, object]]:
     match report.detailed:
         case DetailedStatus(system=system, assumed=assumed):
             if assumed:
-                yield "detailed status", "FACON's layout assumed: no paper describes an M-series PLC's"
+                yield "detailed status", "layout of FACON assumed: no paper describes that of the M-series"
             yield from _system_rows(system)
         case RawStatus(raw):
-            yield "detailed status", f"{len(raw)} bytes that no paper describes: {raw.hex(' ').upper()}"
+            yield (
+                "detailed status",
+                f"{len(raw)} bytes that no paper describes: {raw.hex(' ').upper()}",
+            )
 
 
 def _system_rows(system: System) -> Iterator[tuple[str, object]]:

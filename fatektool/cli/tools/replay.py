@@ -1,4 +1,4 @@
-"""``simulate --replay``: a recorded PLC, from the trace file to what is said at its end."""
+"""``simulate --replay``: a recorded PLC, from the trace file to the messages at its end."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ def open_replay(path: Path, protocol: str, speed: float, context: click.Context,
 
     Args:
         path: the trace file.
-        protocol: what was recorded, if the trace does not tell, or the user does.
+        protocol: that of the trace, if the trace does not name it or the user gives one.
         speed: see ``Replay``.
         context: of the command, to see what options were given.
-        voice: is told what was asked that the recording does not hold.
+        voice: prints requests that are not in the trace.
 
     Raises:
         UsageError: an option that only a simulated PLC has, or no such file.
@@ -47,7 +47,7 @@ def open_replay(path: Path, protocol: str, speed: float, context: click.Context,
         given = context.get_parameter_source(parameter.name or "")
         if parameter.name not in OF_A_REPLAY and given is not ParameterSource.DEFAULT:
             raise UsageError(
-                f"{parameter.opts[0]} and --replay: a recorded PLC is what it was when it was recorded",
+                f"{parameter.opts[0]} does not go with --replay: the PLC's settings are those of the trace",
                 hint="leave one of them out",
             )
     trace = list(read_trace(read_bounded(path, _MAX_TRACE), str(path)))
@@ -59,14 +59,14 @@ def open_replay(path: Path, protocol: str, speed: float, context: click.Context,
             records,
             protocol,
             speed=speed,
-            on_unknown=lambda request: voice.detail(f"not recorded: {_named(request)}"),
+            on_unknown=lambda request: voice.detail(f"not in the trace: {_named(request)}"),
         )
     except DataError as error:
         raise DataError(f"{path}: {error.message}", hint=error.hint) from error
 
 
 def tell_unknown(replay: Replay, voice: Voice) -> None:
-    """Say what was asked that the recording does not hold: those asked most often by name."""
+    """Print the requests that are not in the trace: the most frequent ones by name."""
     if not replay.unknown_count:
         return
     often = sorted(replay.unknown.items(), key=lambda item: -item[1])
@@ -74,7 +74,7 @@ def tell_unknown(replay: Replay, voice: Voice) -> None:
     more = ["…"] if len(names) > _MOST_NAMED else []
     s = "s" if replay.unknown_count > 1 else ""
     voice.say(
-        f"{replay.unknown_count} request{s} not in the recording, left without an answer:"
+        f"{replay.unknown_count} request{s} not in the trace, not answered:"
         f" {', '.join(names[:_MOST_NAMED] + more)}"
     )
 

@@ -1,4 +1,4 @@
-"""``simulate``: a PLC for others to test against."""
+"""``simulate``: simulated PLCs, to test clients with."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _DEFAULT_MODELS = ", ".join(f"{slave.model} with {name}" for name, slave in SLAV
     "simulate",
     epilog="Example: fatektool simulate --tcp 127.0.0.1:5000 --pty /tmp/plc --baud 9600 --fault drop=0.01",
 )
-@click.option("--tcp", multiple=True, metavar="HOST:PORT", help="Listen on TCP; port 0 picks a free one.")
+@click.option("--tcp", multiple=True, metavar="HOST:PORT", help="Listen on TCP; port 0 selects a free one.")
 @click.option("--udp", multiple=True, metavar="HOST:PORT", help="Listen on UDP.")
 @click.option(
     "--discovery",
@@ -48,50 +48,63 @@ _DEFAULT_MODELS = ", ".join(f"{slave.model} with {name}" for name, slave in SLAV
     metavar="HOST[:PORT]",
     help="Answer 'scan --network' as an Ethernet module does; the port is 111 unless named.",
 )
-@click.option("--pty", multiple=True, metavar="LINK", help="Be a serial port: a pty, LINK leads to it.")
+@click.option(
+    "--pty",
+    multiple=True,
+    metavar="LINK",
+    help="Open a serial port (pty), with the symbolic link LINK to it.",
+)
 @click.option("--protocol", type=click.Choice(list(PROTOCOLS)), default=DEFAULT, show_default=True)
-@click.option("--station", multiple=True, type=click.IntRange(1, 254), help="A station; may be repeated.")
+@click.option(
+    "--station", multiple=True, type=click.IntRange(1, 254), help="Station of a PLC; repeat for more."
+)
 @click.option(
     "--model",
     type=click.Choice(list(MODELS)),
-    help=f"What the PLCs are.  [default: {_DEFAULT_MODELS}]",
+    help=f"Model of the PLCs.  [default: {_DEFAULT_MODELS}]",
 )
-@click.option("--ladder-words", type=click.IntRange(1, 65535), help="Another size of the program memory.")
-@click.option("--program", type=PATH, metavar="BACKUP", help="The program in the PLCs.")
+@click.option("--ladder-words", type=click.IntRange(1, 65535), help="Size of the program memory.")
+@click.option("--program", type=PATH, metavar="BACKUP", help="Program of the PLCs.")
 @click.option(
     "--program-seed",
     type=int,
     default=1,
     show_default=True,
-    help="Which demonstration program, without BACKUP.",
+    help="Seed of the demonstration program, without --program.",
 )
 @click.option(
     "--swap-program", is_flag=True, help="Exchange the bytes of each word of an FBs demonstration program."
 )
 @click.option("--state", type=PATH, metavar="FILE", help="Keep the PLCs' memory in FILE.")
 @click.option(
-    "--set", "flags", multiple=True, type=click.Choice(FLAGS), help="A state of the PLCs; repeat for more."
+    "--set",
+    "flags",
+    multiple=True,
+    type=click.Choice(FLAGS),
+    help="Set this state of the PLCs; repeat for more.",
 )
-@click.option("--baud", type=click.IntRange(50, 4_000_000), help="Pace the line.")
 @click.option(
-    "--strict-baud", is_flag=True, help="A client of a pty at another speed than --baud is not understood."
+    "--baud", type=click.IntRange(50, 4_000_000), help="Baud rate: answers take as long as on such a line."
+)
+@click.option(
+    "--strict-baud", is_flag=True, help="Understand a client of a pty only at the baud rate of --baud."
 )
 @click.option(
     "--format",
     "line_format",
-    help=f"Bits a character, for the pace.  [default: {DEFAULT_FORMATS}]",
+    help=f"Bits per character, for --baud.  [default: {DEFAULT_FORMATS}]",
 )
-@click.option("--scan-ms", type=click.FloatRange(0, 60_000), default=0.0, help="Time to answer.")
+@click.option("--scan-ms", type=click.FloatRange(0, 60_000), default=0.0, help="Time until an answer.")
 @click.option(
     "--fault",
     multiple=True,
     metavar="KIND=P",
-    help=f"Go wrong with probability P: {', '.join(PROBABILITY_KINDS)}; bit-errors=P, for each byte;"
+    help=f"A fault with probability P: {', '.join(PROBABILITY_KINDS)}; bit-errors=P, for each byte;"
     " power-cut=N, at the N-th write of a page.",
 )
-@click.option("--seed", type=int, default=0, show_default=True, help="Of the faults.")
+@click.option("--seed", type=int, default=0, show_default=True, help="Seed of the faults.")
 @click.option(
-    "--replay", type=PATH, metavar="TRACE", help="Answer as the PLC did that --trace recorded in TRACE."
+    "--replay", type=PATH, metavar="TRACE", help="Answer as the PLC in TRACE, which --trace recorded."
 )
 @click.option(
     "--replay-speed",
@@ -104,10 +117,14 @@ _DEFAULT_MODELS = ", ".join(f"{slave.model} with {name}" for name, slave in SLAV
     type=click.FloatRange(0, 10_000),
     default=0.0,
     metavar="MS",
-    help="Give answers out at ticks of MS ms only, as a USB adapter does (16).",
+    help="Send answers only every MS ms, as a USB adapter does (16).",
 )
 @click.option("--no-program-commands", is_flag=True, help="Refuse 4F and 50, as an FBs may.")
-@click.option("--no-error-character", is_flag=True, help="Answer 4F and 53 as the paper's figures draw them.")
+@click.option(
+    "--no-error-character",
+    is_flag=True,
+    help="Answer 4F and 53 without the error character, as in the paper's figures.",
+)
 @voice_options
 def simulate_command(
     voice: Voice,
@@ -137,14 +154,14 @@ def simulate_command(
     no_program_commands: bool,
     no_error_character: bool,
 ) -> None:
-    """Be one or more PLCs with memory, for clients to be tested against.
+    """Simulate one or more PLCs with memory, to test clients with.
 
-    Prints one line 'listening …' for each address, and ends on SIGTERM or Ctrl-C. Binds to 127.0.0.1 unless
-    another host is named.
+    Prints one line 'listening …' for each address, and ends on SIGTERM or Ctrl-C. Listens on 127.0.0.1 unless
+    another host is given.
 
-    For diagnosis there are faults of a line: wrong-line, noise instead of an answer, as when baud or format
-    do not fit; twins, two PLCs at one station; bit-errors, each byte for itself, so that long answers suffer
-    more. The same seed gives the same faults; docs/simulator.md describes each.
+    Some faults are those of a line: wrong-line is noise instead of an answer, as with a wrong baud rate or
+    format; twins are two PLCs with one station; bit-errors are in single bytes, so that longer answers have
+    more of them. The same seed gives the same faults; docs/simulator.md describes each.
     """
     if not (tcp or udp or pty or discovery):
         raise UsageError(
@@ -166,9 +183,9 @@ def simulate_command(
         return
     _require_effects(protocol, baud, fault)
     if strict_baud and (baud is None or not pty):
-        raise UsageError("--strict-baud is for a --pty with a --baud")
+        raise UsageError("--strict-baud needs --pty and --baud")
     if replay_speed is not None:
-        raise UsageError("--replay-speed is for a recorded PLC", hint="name the recording with --replay")
+        raise UsageError("--replay-speed needs --replay TRACE")
     simulation = build_simulation(
         station or None,
         model,
@@ -198,11 +215,11 @@ def simulate_command(
 def _program(
     program: Path | None, ladder_words: int | None, state: Path | None, voice: Voice
 ) -> dict[str, Any]:
-    """What the options say of the program in the PLCs."""
+    """The program in the PLCs, as the options say."""
     if state is not None and state.exists():
         for name in ("program", "program_seed", "swap_program", "ladder_words"):
             if option := given(name):
-                voice.warn(f"{option} fills a new file only: what {state} holds counts")
+                voice.warn(f"{option} only applies to a new file: the program in {state} is used")
     if program is None:
         return {} if ladder_words is None else {"ladder_words": ladder_words}
     from fatektool.program.archive import load_backup
@@ -215,8 +232,8 @@ def _program(
 
 def _require_effects(protocol: str, baud: int | None, faults: tuple[str, ...]) -> None:
     """Refuse what would have no effect."""
-    apart("program", "program_seed", "swap_program", why="they are of the demonstration program")
-    together("line_format", holds=baud is not None, needs="--baud, whose pace it is")
+    apart("program", "program_seed", "swap_program", why="they are for the demonstration program")
+    together("line_format", holds=baud is not None, needs="--baud")
     together("seed", holds=bool(faults), needs="--fault")
     together("no_error_character", holds=protocol == "facon", needs="--protocol facon")
 

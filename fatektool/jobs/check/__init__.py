@@ -1,1 +1,1 @@
-"""Is a PLC as it ought to be, with its program and its last backup?"""
+"""The check of a PLC for monitoring: its state, its program, its last backup."""

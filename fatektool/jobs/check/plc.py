@@ -1,4 +1,4 @@
-"""Is a PLC as it ought to be? For monitoring: each fact with its state.
+"""The check of a PLC for monitoring: each fact with its state.
 
 =====================  ==========  ==============================================================
 fact                   if not so   what it is
@@ -8,7 +8,7 @@ running                CRITICAL    in RUN or STOP, as expected
 ladder checksum        CRITICAL    that of the PLC's own status
 watchdog               CRITICAL    the same
 battery                WARNING     the same
-emergency stop         WARNING     the same: somebody pressed it, the PLC itself is well
+emergency stop         WARNING     the same: somebody pressed it, the PLC itself is ok
 restore                CRITICAL    none into this PLC was left unfinished, as far as this user's records say
 write of values        WARNING     the same: some values are the previous ones, others new
 program                CRITICAL    word for word that of the reference; UNKNOWN if either cannot be read
@@ -16,8 +16,8 @@ backup                 CRITICAL    the last one can be read, and has a program i
 its age                WARNING     not above the limit, not of the future
 =====================  ==========  ==============================================================
 
-The PLC is asked first, and the reference is opened afterwards: what is wrong with the file hides nothing of
-what is wrong with the PLC.
+The PLC is asked first, and the reference is opened afterwards: a fault of the file must not hide a fault of
+the PLC.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class CheckPlan:
 
     Attributes:
         expect: the mode: ``run``, ``stop`` or ``any``.
-        reference: the backup or project whose program ought to be in the PLC; None for none.
+        reference: the backup or project with the expected program; None for none.
         backup: the last backup; None for none.
         max_age_s: how old that may be; None for any age.
     """

@@ -1,4 +1,4 @@
-"""What a check finds: facts with a state each, and the worst of them.
+"""The result of a check: facts with a state each, and the worst of them.
 
 States are those of monitoring plugins (Monitoring Plugins Development Guidelines, section 2.3). UNKNOWN is
 the weakest of the bad ones: what could not be checked must not hide what was found.
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class State(IntEnum):
-    """What a plugin's exit code says."""
+    """The exit codes of a monitoring plugin."""
 
     OK = 0
     WARNING = 1
@@ -31,13 +31,13 @@ _BY_WEIGHT: Final = (State.CRITICAL, State.WARNING, State.UNKNOWN, State.OK)
 
 
 def worst(states: Iterable[State]) -> State:
-    """The one that somebody must look at first; OK if there is none."""
+    """The worst state; OK if there is none."""
     return min(states, key=_BY_WEIGHT.index, default=State.OK)
 
 
 @dataclass(frozen=True, slots=True)
 class Fact:
-    """One thing that was looked at."""
+    """One thing that was checked."""
 
     state: State
     words: str
@@ -45,7 +45,7 @@ class Fact:
 
 @dataclass(slots=True)
 class CheckResult:
-    """What was found.
+    """The facts of one check.
 
     Attributes:
         facts: in the order of the table in ``jobs/check/plc.py``.
@@ -71,10 +71,10 @@ class CheckResult:
         return ", ".join(fact.words for fact in ordered)
 
     def add(self, bad: State | None, words: str) -> None:
-        """Note a fact; ``bad`` is None for one that is as it ought to be."""
+        """Add a fact; ``bad`` is None for one that is OK."""
         self.facts.append(Fact(State.OK if bad is None else bad, words))
 
     def fail(self, error: FatektoolError) -> None:
-        """Note what kept the PLC from being looked at."""
+        """Add the error that ended the check of the PLC."""
         dead = isinstance(error, LineError) and not isinstance(error, PortBusy)
         self.add(State.CRITICAL if dead else State.UNKNOWN, error.message)

@@ -1,7 +1,7 @@
-"""A command of the user's own when something happened: it gets the event in its environment, never on a line.
+"""The user's own command after a failure or change: it gets the event in its environment, not as arguments.
 
-The command is started without a shell, so nothing in a PLC's name or in a message is read as a command. It
-may take half a minute; then it is ended, and all that it started with it.
+The command is started without a shell, so nothing in a PLC's name or in a message is taken for a command. It
+may take half a minute; then it is ended, with all that it started.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def parse_command(text: str, option: str) -> tuple[str, ...]:
 
     Args:
         text: ``mail-alarm --to 'the team'``.
-        option: where it stands, for messages.
+        option: its option, for messages.
 
     Raises:
         UsageError: a quotation without an end, or nothing.

@@ -32,7 +32,7 @@ def require_ladder(program: Program) -> None:
     if ladder == ladder[:1] * len(ladder):
         raise DataError(
             f"the program is empty: every byte of its ladder is {ladder[0]:02X}",
-            hint="has the PLC lost its memory? 'fatektool backup' keeps an image that is meant to be empty",
+            hint="check the memory of the PLC; 'fatektool backup' saves an image that is meant to be empty",
         )
 
 

@@ -198,7 +198,7 @@ def test_status_in_words(press: Press, cli: Cli) -> None:
     out = cli("status", "-p", press.target).out
     for line in (
         "mode              STOP",
-        "battery           LOW: take a backup and a snapshot now, then change it",
+        "battery           LOW: take a backup and a snapshot now, then replace it",
         "emergency stop    ACTIVE",
         "ROM pack          in use: the program cannot be written",
         "ladder size       400 words",

@@ -156,7 +156,7 @@ def test_a_trace_is_explained(line: Line, place: Path, cli: Cli) -> None:
         assert cli("decode", place / name).out == shown.out  # the trace tells its protocol
         refused = cli("decode", place / name, "--protocol", "facon")
         assert refused.code == 5
-        assert "no facon frame in it" in refused.err
+        assert "no facon frame found" in refused.err
         assert "--protocol mseries" in refused.err
 
 

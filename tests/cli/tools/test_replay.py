@@ -122,8 +122,8 @@ def test_every_door_and_what_is_said_at_the_end(place: Path, cli: Cli) -> None:
         running_process.terminate()
         _, err = running_process.communicate()
     assert running_process.returncode == 0
-    assert err.splitlines() == ["not recorded: station 1 46 01R00001"] * 3 + [
-        "3 requests not in the recording, left without an answer: station 1 46 01R00001 (3 times)"
+    assert err.splitlines() == ["not in the trace: station 1 46 01R00001"] * 3 + [
+        "3 requests not in the trace, not answered: station 1 46 01R00001 (3 times)"
     ]
 
 
@@ -146,23 +146,23 @@ def test_json(place: Path, cli: Cli) -> None:
 
 ASKS = '{"time": "2026-11-22T03:15:00Z", "direction": "tx", "hex": "0230313430433703"}\n'
 REFUSALS = [
-    (2, "--replay good.ndjson --station 3", "--station and --replay: "),
-    (2, "--replay good.ndjson --program x.json", "--program and --replay: "),
-    (2, "--replay good.ndjson --state x.state", "--state and --replay: "),
-    (2, "--replay good.ndjson --set running", "--set and --replay: "),
-    (2, "--replay good.ndjson --model fbe-28mc", "--model and --replay: "),
-    (2, "--replay good.ndjson --ladder-words 400", "--ladder-words and --replay: "),
-    (2, "--replay good.ndjson --program-seed 1", "--program-seed and --replay: "),
-    (2, "--replay good.ndjson --fault drop=1", "--fault and --replay: "),
-    (2, "--replay good.ndjson --seed 0", "--seed and --replay: "),
-    (2, "--replay good.ndjson --baud 9600", "--baud and --replay: "),
-    (2, "--replay good.ndjson --format 7E1", "--format and --replay: "),
-    (2, "--replay good.ndjson --scan-ms 1", "--scan-ms and --replay: "),
-    (2, "--replay good.ndjson --no-program-commands", "--no-program-commands and --replay: "),
-    (2, "--replay good.ndjson --no-error-character", "--no-error-character and --replay: "),
+    (2, "--replay good.ndjson --station 3", "--station does not go with --replay: "),
+    (2, "--replay good.ndjson --program x.json", "--program does not go with --replay: "),
+    (2, "--replay good.ndjson --state x.state", "--state does not go with --replay: "),
+    (2, "--replay good.ndjson --set running", "--set does not go with --replay: "),
+    (2, "--replay good.ndjson --model fbe-28mc", "--model does not go with --replay: "),
+    (2, "--replay good.ndjson --ladder-words 400", "--ladder-words does not go with --replay: "),
+    (2, "--replay good.ndjson --program-seed 1", "--program-seed does not go with --replay: "),
+    (2, "--replay good.ndjson --fault drop=1", "--fault does not go with --replay: "),
+    (2, "--replay good.ndjson --seed 0", "--seed does not go with --replay: "),
+    (2, "--replay good.ndjson --baud 9600", "--baud does not go with --replay: "),
+    (2, "--replay good.ndjson --format 7E1", "--format does not go with --replay: "),
+    (2, "--replay good.ndjson --scan-ms 1", "--scan-ms does not go with --replay: "),
+    (2, "--replay good.ndjson --no-program-commands", "--no-program-commands does not go with --replay: "),
+    (2, "--replay good.ndjson --no-error-character", "--no-error-character does not go with --replay: "),
     (2, "--replay good.ndjson --replay-speed -1", "-1"),
     (2, "--replay good.ndjson --replay-speed nan", "a replay's speed is 0 or more, not nan"),
-    (2, "--replay-speed 2", "--replay-speed is for a recorded PLC"),
+    (2, "--replay-speed 2", "--replay-speed needs --replay TRACE"),
     (2, "--replay nowhere.ndjson", "cannot read nowhere.ndjson"),
     (5, "--replay empty.ndjson", "empty.ndjson: no facon request in the recording"),
     (5, "--replay good.ndjson --protocol mseries", "good.ndjson: no mseries request in the recording"),
@@ -207,4 +207,4 @@ def test_every_other_option_is_refused(cli: Cli) -> None:
         value = [] if getattr(parameter, "is_flag", False) else [examples.get(parameter.name, "100")]
         done = cli("simulate", "--tcp", ":0", "--replay", "good.ndjson", parameter.opts[0], *value)
         assert done.code == 2
-        assert f"{parameter.opts[0]} and --replay: a recorded PLC" in one_line(done.err)
+        assert f"{parameter.opts[0]} does not go with --replay: the PLC" in one_line(done.err)

@@ -32,13 +32,15 @@ if TYPE_CHECKING:
 
 
 @click.command("backup", epilog="Example: fatektool fleet backup --dir backups --on-failure send-alarm")
-@click.option("--dir", "folder", type=PATH, help="Write DIR/NAME.json for each, in place of the one before.")
+@click.option(
+    "--dir", "folder", type=PATH, help="Write DIR/NAME.json for each PLC, in place of the previous one."
+)
 @click.option(
     "--history",
     type=PATH,
     metavar="DIR",
     envvar="FATEKTOOL_HISTORY",
-    help="Keep what changed in a git repository.  [env: FATEKTOOL_HISTORY]",
+    help="Record changes in a git repository.  [env: FATEKTOOL_HISTORY]",
 )
 @click.option("--push", "remote", metavar="REMOTE", help="Then push the history: a folder, ssh://, https://.")
 @click.option("--single-pass", is_flag=True, help="Read once instead of twice; nothing is compared.")
@@ -59,12 +61,12 @@ def backup_command(
 ) -> int:
     """Back up the PLCs' programs.
 
-    Each file is written whole or not at all: a backup that fails leaves the one before as it is. An image
-    that has lost its program, one byte all over, is a failure. 'fatektool history' shows what --history
-    keeps. A push that fails is warned of, and exit 1.
+    Each file is written completely or not at all: after a failure the previous backup is still there. An
+    image without a program, where all bytes are the same, is a failure. 'fatektool history' shows the records
+    of --history. A failed push is a warning, and exit 1.
     """
     if folder is None and history is None:
-        raise UsageError("no place for the backups", hint="give --dir DIR or --history DIR, or both")
+        raise UsageError("no target for the backups", hint="give --dir DIR or --history DIR, or both")
     if remote is not None and history is None:
         raise UsageError("--push goes with --history DIR")
     if folder is not None:
@@ -85,7 +87,7 @@ def _opened(folder: Path, voice: Voice) -> History:
 
 
 def _push(history: Path, remote: str, voice: Voice) -> dict[str, Any]:
-    """Push, and tell what became of it: the backups are kept here in any case."""
+    """Push the history. If it fails, that is a warning: the backups are saved here in any case."""
     from fatektool.history.push import push
 
     if not history.exists():  # no PLC has given its program yet
@@ -109,9 +111,9 @@ def _work(
     """``fleet backup``.
 
     Args:
-        voice: is told of what is odd.
+        voice: prints warnings.
         folder: where NAME.json is written; None for nowhere.
-        history: keeps what changed, open as long as the round lasts; None for none.
+        history: records changes, open until all PLCs are done; None for none.
         single_pass: as for ``backup``.
         any_header: as for ``backup``.
     """
@@ -134,7 +136,7 @@ def _work(
             replaced = replace_backup(found.backup, path)
             changed = replaced.changed
             if replaced.damaged is not None:
-                voice.warn(f"{replaced.damaged}: it is replaced")
+                voice.warn(f"{replaced.damaged}: the file is replaced")
         if history is not None:
             changed = _record(history, entry.name, found.backup, own)
         document = saved_document(found, path or kept_in or Path())

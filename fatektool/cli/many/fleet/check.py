@@ -39,9 +39,11 @@ _MOST_NAMED = 5
     cls=PluginCommand,
     epilog="Example: fatektool fleet check --no-reference --backups backups --max-age 36h",
 )
-@click.option("--no-reference", is_flag=True, help="Do not read the programs: a look of a moment each.")
-@click.option("--backups", type=PATH, metavar="DIR", help="Where 'fleet backup' wrote the last good ones.")
-@click.option("--max-age", metavar="AGE", help="How old those may be: 36h, 7d.")
+@click.option("--no-reference", is_flag=True, help="Do not compare the programs, which takes time.")
+@click.option(
+    "--backups", type=PATH, metavar="DIR", help="Folder of the last backups, written by 'fleet backup'."
+)
+@click.option("--max-age", metavar="AGE", help="Maximum age of the backups: 36h, 7d.")
 @alarm_options(changes=True, place_first=False)
 @fleet_options
 def check_command(
@@ -55,7 +57,7 @@ def check_command(
 ) -> int:
     """Check the PLCs as one monitoring plugin: exit 0 OK, 1 WARNING, 2 CRITICAL, 3 UNKNOWN, the worst of all.
 
-    The same as 'check' for each, with the reference and the mode that the inventory names.
+    Each PLC is checked as by 'check', with the reference and the mode of the inventory.
     """
     if max_age is not None and backups is None:
         raise UsageError("--max-age goes with --backups DIR")
@@ -110,7 +112,7 @@ def _lines(
         if names:
             more = f" and {len(names) - _MOST_NAMED} more" if len(names) > _MOST_NAMED else ""
             parts.append(f"{len(names)} {state.name}: {', '.join(names[:_MOST_NAMED])}{more}")
-    words = "; ".join([f"{counts[State.OK]} of {len(states)} PLCs well", *parts, *lost])
+    words = "; ".join([f"{counts[State.OK]} of {len(states)} PLCs ok", *parts, *lost])
     figures = {state.name.lower(): str(counts[state]) for state in State}
     yield plugin_line(found, words, figures | {"duration": f"{document['duration_s']}s;;;0"})
     for plc in document["plcs"]:

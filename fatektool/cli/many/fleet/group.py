@@ -1,4 +1,4 @@
-"""``fleet``: the same with every PLC of the inventory, many at once."""
+"""``fleet``: a command for many PLCs of the inventory."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from fatektool.cli.shared.lazy_group import LazyGroup, Subcommand, commands
     "fleet",
     cls=LazyGroup,
     sections=commands(
-        status=Subcommand("many.fleet.status", "Show how the PLCs are."),
+        status=Subcommand("many.fleet.status", "Show mode and state of the PLCs."),
         backup=Subcommand("many.fleet.backup", "Back up the PLCs' programs."),
         verify=Subcommand("many.fleet.verify", "Compare each PLC's program with its reference."),
         snapshot=Subcommand("many.fleet.snapshot", "Read each PLC's data, by its specification."),
@@ -20,8 +20,8 @@ from fatektool.cli.shared.lazy_group import LazyGroup, Subcommand, commands
     epilog="Example: fatektool fleet backup --dir backups --jobs 8 --select night",
 )
 def fleet_command() -> None:
-    """Do one thing with every PLC of the inventory, or with those of --select.
+    """Run a command for every PLC of the inventory, or for those of --select.
 
-    PLCs on one line (one serial port, one gateway) are asked one after the other, lines side by side. Exit 0
-    if all are well, 1 if some are not. With -q only what is not well or changed is told.
+    PLCs on one line (one serial port, one gateway) are asked one after the other, several lines at the same
+    time. Exit 0 if all are ok, 1 if some are not. --news prints only those that are not ok or have changed.
     """

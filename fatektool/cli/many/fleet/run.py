@@ -1,4 +1,4 @@
-"""Running a job on many PLCs: who is meant, what is seen as they end, the document, the exit code."""
+"""Running a job on many PLCs: their selection, the output as they end, the document, the exit code."""
 
 from __future__ import annotations
 
@@ -41,11 +41,11 @@ _NEWS = "fatektool.news"
 
 @dataclass(frozen=True, slots=True)
 class Orders:
-    """What the options of a fleet command say.
+    """The options of a fleet command.
 
     Attributes:
         inventory: all PLCs.
-        entries: those that are meant.
+        entries: the selected ones.
         jobs: so many lines at once.
         deadline_s: how long one PLC may take.
     """
@@ -78,7 +78,7 @@ def fleet_options(function: F) -> F:
         default=16,
         show_default=True,
         metavar="N",
-        help="So many lines at once.",
+        help="Number of lines at the same time.",
     )
     @click.option(
         "--deadline",
@@ -86,7 +86,7 @@ def fleet_options(function: F) -> F:
         default=1800.0,
         show_default=True,
         metavar="S",
-        help="How long one PLC may take, before it is given up.",
+        help="Time limit for one PLC.",
     )
     @voice_options
     @wraps(function)
@@ -110,7 +110,7 @@ def news_option(function: F) -> F:
         is_flag=True,
         expose_value=False,
         callback=keep,
-        help="Print only the PLCs that are not well or have changed.",
+        help="Print only PLCs that are not ok or have changed.",
     )(function)
 
 
@@ -128,15 +128,15 @@ def run_fleet(
     *,
     lines: bool = True,
 ) -> tuple[dict[str, Any], bool]:
-    """Do a job with each PLC, and tell of each as it ends.
+    """Do a job with each PLC, and report each as it ends.
 
     Args:
-        job: what is done, as the command is called.
-        orders: with whom, and how.
-        alarms: who is told.
-        voice: how the command talks.
-        work: does it with one PLC, in a thread.
-        lines: False for a job that prints another thing than a line a PLC.
+        job: the name of the command.
+        orders: which PLCs, and how.
+        alarms: gets the outcomes.
+        voice: prints.
+        work: does the job with one PLC, in a thread.
+        lines: False for a job that does not print a line for each PLC.
 
     Returns:
         ``fatektool.fleet/1``, and True if it was interrupted.
@@ -194,13 +194,13 @@ def opened(entry: PlcEntry, turn: Turn[JobResult], voice: Voice, *needs: Command
 
 
 def ended(job: str, document: dict[str, Any], voice: Voice, alarms: Alarms, *, interrupted: bool) -> int:
-    """Print the document, say how it went, and give the exit code: 0 all well, 1 some not, or the worst."""
+    """Print document and summary; give the exit code: 0 if all are ok, 1 if some are not."""
     voice.show(document, ())
     summary = document["summary"]
     slowest = document["slowest"][:1]
-    words = [f"{job}: {summary['ok']} of {summary['total']} well"]
+    words = [f"{job}: {summary['ok']} of {summary['total']} ok"]
     if summary["failed"]:
-        words.append(f"{summary['failed']} not")
+        words.append(f"{summary['failed']} not ok")
     if summary["changed"]:
         words.append(f"{summary['changed']} changed")
     if summary["not_done"]:
@@ -220,5 +220,5 @@ def ended(job: str, document: dict[str, Any], voice: Voice, alarms: Alarms, *, i
 def _outcome(entry: PlcEntry, turn: Turn[JobResult]) -> Outcome:
     result = turn.result
     if result is None:
-        result = failure(turn.error or FatektoolError("nothing came of it"))
+        result = failure(turn.error or FatektoolError("no result"))
     return Outcome(entry.name, entry.address.target, entry.address.station, turn.duration_s or 0.0, result)

@@ -30,13 +30,15 @@ if TYPE_CHECKING:
 
 
 @click.command("snapshot", epilog="Example: fatektool fleet snapshot --dir snapshots --keep 30d")
-@click.option("--dir", "folder", type=PATH, required=True, help="Write a dated file for each, in DIR/NAME/.")
-@click.option("--keep", metavar="N|DAYSd", help="Keep N snapshots of each, or those of so many days.")
+@click.option(
+    "--dir", "folder", type=PATH, required=True, help="Write a dated file for each PLC, in DIR/NAME/."
+)
+@click.option("--keep", metavar="N|DAYSd", help="Keep N snapshots of each PLC, or those of so many days.")
 @alarm_options(changes=False)
 @news_option
 @fleet_options
 def snapshot_command(orders: Orders, alarms: Alarms, voice: Voice, *, folder: Path, keep: str | None) -> int:
-    """Read each PLC's data, as the specification says that the inventory names."""
+    """Read each PLC's data by its specification, which the inventory names."""
     require_folder_for(folder, voice)
     kept = None if keep is None else Keep.parse(keep)
     document, interrupted = run_fleet("snapshot", orders, alarms, voice, _work(voice, folder, kept))
@@ -48,7 +50,7 @@ def _work(voice: Voice, folder: Path, keep: Keep | None) -> Callable[[PlcEntry, 
 
     def work(entry: PlcEntry, turn: Turn[JobResult]) -> JobResult:
         if entry.spec is None:
-            raise UsageError("it has no specification", hint='put spec = "FILE.toml" into the inventory')
+            raise UsageError("no specification in the inventory", hint='add spec = "FILE.toml" there')
         spec = load_spec(entry.spec)
         with opened(entry, turn, voice) as plc:
             snapshot = take_snapshot(plc, spec.items)

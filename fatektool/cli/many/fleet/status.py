@@ -1,4 +1,4 @@
-"""``fleet status``: how the PLCs are."""
+"""``fleet status``: mode and state of the PLCs."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 
 
 @click.command("status", epilog="Example: fatektool fleet status --select hall-1")
-@click.option("--brief", is_flag=True, help="The brief status (40) alone.")
+@click.option("--brief", is_flag=True, help="Only the brief status (40).")
 @alarm_options(changes=False)
 @news_option
 @fleet_options
 def status_command(orders: Orders, alarms: Alarms, voice: Voice, *, brief: bool) -> int:
-    """Show how the PLCs are."""
+    """Show mode and state of the PLCs."""
     document, interrupted = run_fleet("status", orders, alarms, voice, _work(voice, brief=brief))
     return ended("status", document, voice, alarms, interrupted=interrupted)
 
@@ -44,7 +44,7 @@ def _work(voice: Voice, *, brief: bool) -> Callable[[PlcEntry, Turn[JobResult]],
 
 
 def flag_words(flags: StatusFlags) -> str:
-    """RUN or STOP, and what is not as it should be."""
+    """RUN or STOP, and the faults that the PLC reports."""
     odd = {
         "battery LOW": flags.battery_low,
         "ladder checksum ERROR": flags.ladder_checksum_error,

@@ -40,7 +40,7 @@ def _work(voice: Voice) -> Callable[[PlcEntry, Turn[JobResult]], JobResult]:
     def work(entry: PlcEntry, turn: Turn[JobResult]) -> JobResult:
         reference = entry.reference
         if reference is None:
-            raise UsageError("it has no reference", hint='put reference = "FILE" into the inventory')
+            raise UsageError("no reference in the inventory", hint='add reference = "FILE" there')
         on_file = load_program(reference)
         with opened(entry, turn, voice, Command.READ_PAGE) as plc:
             result = compare_with_plc(plc, on_file, progress=turn.progress)

@@ -1,6 +1,6 @@
-"""A line for each PLC as it ends; on a terminal below them a table of those at work.
+"""A line for each PLC as it ends; on a terminal a table of the running ones below.
 
-With ``-q`` there are lines only for what is not well or changed: cron mails nothing else.
+With ``--news`` only PLCs that are not ok or have changed have a line: cron mails nothing else.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ _WORDS: Final = {0: "ok", 1: "differs"}
 
 
 class View:
-    """What is seen of a fleet at work, for a ``with`` statement.
+    """The output while a fleet command runs, for a ``with`` statement.
 
     Args:
         job: what is done.
         names: of all PLCs.
-        voice: how the command talks.
-        lines: False for no line a PLC.
-        news: no line for a PLC that is well and unchanged.
+        voice: prints.
+        lines: False for no lines.
+        news: no line for a PLC that is ok and unchanged.
     """
 
     def __init__(self, job: str, names: list[str], voice: Voice, *, lines: bool, news: bool) -> None:
@@ -82,7 +82,7 @@ class View:
             sys.stdout.flush()
 
     def refresh(self, fleet: Fleet[Any]) -> None:
-        """Show those at work, a few times a second."""
+        """Show the running ones, a few times a second."""
         now = time.monotonic()
         if not self.live or now - self._refreshed < _REFRESH_S:
             return
@@ -96,7 +96,7 @@ class View:
         rows = [self._row(turn, now) for turn in running[:room]]
         if len(running) > room:
             rows.append(f"… {len(running) - room} more")
-        not_well = f", {self._not_well} not well" if self._not_well else ""
+        not_well = f", {self._not_well} not ok" if self._not_well else ""
         rows.append(f"{self._job}: {self._ended} of {self._total} ended{not_well}")
         return Text("\n".join(rows), no_wrap=True, overflow="ellipsis")
 

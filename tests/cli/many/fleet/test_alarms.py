@@ -273,7 +273,7 @@ def test_a_command_that_hangs_is_not_started_for_ever(
     plant.write(**{f"n{number}": 'target = "tcp://127.0.0.1:1"\n' for number in range(5)})
     done = cli("fleet", "status", "--on-failure", "x", "--news", "-q")
     assert done.err.count(": hung") == 3
-    assert done.err.count("x is not started, as it hung 3 times before") == 2
+    assert done.err.count("x is not run: it timed out 3 times") == 2
 
 
 @pytest.mark.parametrize(

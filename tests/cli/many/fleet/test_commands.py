@@ -43,7 +43,7 @@ def test_status(cli: Cli, plant: Hall) -> None:
         "press  ok        RUN",
         "pump   ok        STOP, battery LOW",
     ]
-    assert re.fullmatch(r"status: 3 of 3 well, \d\.\d s, slowest \w+ \d\.\d s\n", done.err)
+    assert re.fullmatch(r"status: 3 of 3 ok, \d\.\d s, slowest \w+ \d\.\d s\n", done.err)
 
 
 def test_a_document_has_each_plc_s_own(cli: Cli, plant: Hall) -> None:
@@ -162,7 +162,7 @@ def test_what_lies_in_the_place(cli: Cli, plant: Hall) -> None:
     assert Path("backups/oven.json").read_text() == "my notes"
     assert load_backup(Path("backups/press.json")).program == OLD
     assert "press.json: not a backup file" in done.err
-    assert "it is replaced" in done.err
+    assert "the file is replaced" in done.err
 
 
 @pytest.mark.parametrize("words", ["", "--dir fatek.toml"])
@@ -198,7 +198,7 @@ def test_verify_without_a_reference(cli: Cli, plant: Hall) -> None:
     found = plcs_of(cli("fleet", "verify", "--json").document("fleet"))
     assert [plc["exit_code"] for plc in found.values()] == [1, 2, 2]
     assert "ladder size 500 words, and 400" in found["press"]["words"]
-    assert found["oven"]["document"]["error"]["hint"] == 'put reference = "FILE" into the inventory'
+    assert found["oven"]["document"]["error"]["hint"] == 'add reference = "FILE" there'
 
 
 # --- snapshot ----------------------------------------------------------------------------------------------
@@ -217,7 +217,7 @@ def test_snapshot(cli: Cli, plant: Hall) -> None:
     check(found["press"]["document"], "snapshot")
     assert len(found["press"]["document"]["values"]) == 10
     assert found["oven"]["exit_code"] in {4, 5}
-    assert found["pump"]["document"]["error"]["message"] == "it has no specification"
+    assert found["pump"]["document"]["error"]["message"] == "no specification in the inventory"
     kept = list(Path("snaps/press").iterdir())
     assert len(kept) == 2
     assert saved(found["press"]["file"])["schema"] == "fatektool.snapshot/1"

@@ -58,7 +58,7 @@ def test_an_interrupt_tells_what_is_done(number: signal.Signals, *, as_json: boo
     assert command.returncode == 130
     assert err.splitlines()[-1] == "fatektool: interrupted"
     assert "Traceback" not in err
-    assert err.splitlines()[-2].startswith("backup: 1 of 3 well, 2 not done")
+    assert err.splitlines()[-2].startswith("backup: 1 of 3 ok, 2 not done")
     if as_json:
         document = json.loads(out)
         check(document, "fleet")
@@ -94,7 +94,7 @@ def test_the_live_table(columns: int, lines: int) -> None:
             terminal.type("\x03")
             assert terminal.end() == 130
             assert "backup: 1 of 3 ended" in terminal.text or columns < 30
-            assert "backup: 1 of 3 well" in terminal.text.replace("\n", " ")
+            assert "backup: 1 of 3 ok" in terminal.text.replace("\n", " ")
 
 
 def test_nothing_of_it_where_nobody_wants_it() -> None:
