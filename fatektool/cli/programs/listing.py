@@ -2,51 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import click
 
 from fatektool.cli.programs.documents import listing_document
 from fatektool.cli.programs.listing_view import ladder_lines, listing_lines
+from fatektool.cli.programs.network_range import chosen
 from fatektool.cli.programs.program_files import comments_beside, comments_options, program_file, warn_of_code
 from fatektool.cli.shared.inventory_file import inventory_option
 from fatektool.cli.shared.options import PATH, voice_options
 from fatektool.cli.shared.pairs import apart
 from fatektool.cli.shared.report import report_option, write_report
-from fatektool.errors import UsageError
 from fatektool.files.times import utc
 from fatektool.project.program_file import NO_COMMENTS
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from pathlib import Path
 
     from fatektool.cli.shared.output import Voice
-    from fatektool.ladder.networks import Network
-
-
-@dataclass(frozen=True)
-class NetworkRange:
-    """Networks that a user asks for: ``12``, ``10-19``, ``N0012``."""
-
-    first: int
-    last: int
-
-    @classmethod
-    def parse(cls, text: str) -> NetworkRange:
-        """Read one.
-
-        Raises:
-            UsageError: it is none.
-        """
-        first, dash, last = (part.strip().upper().removeprefix("N") for part in text.partition("-"))
-        last = last if dash else first
-        if not (
-            first.isdecimal() and last.isdecimal() and len(first + last) <= 12 and int(first) <= int(last)
-        ):
-            raise UsageError(f"network {text!r}: expected a number or a range, such as 12 or 10-19")
-        return cls(int(first), int(last))
 
 
 @click.command("listing", epilog="Example: fatektool listing press.json --network 0-9 --comments press.pdw")
@@ -82,11 +56,10 @@ def listing_command(
     below at the same number.
     """
     apart("ladder", "words", "as_json", why="a drawing has no words; --report draws into a page")
-    ranges = [NetworkRange.parse(text) for text in wanted]
     found = program_file(file, voice, encoding)
     texts = comments_beside(found, comments, inventory, voice, encoding)
     in_lines = NO_COMMENTS if words and comments is None else texts
-    networks = _chosen(found.networks, ranges)
+    networks = chosen(found.networks, wanted)
     warn_of_code(found, voice)
     document = listing_document(found, networks, texts)
     if report is not None:
@@ -95,20 +68,3 @@ def listing_command(
         write_report(report, listing_report(document, time=utc()))
     lines = ladder_lines(networks, texts) if ladder else listing_lines(networks, in_lines, words=words)
     voice.show(document, lines)
-
-
-def _chosen(networks: Sequence[Network], ranges: Sequence[NetworkRange]) -> list[Network]:
-    """The networks that were asked for, in the program's order.
-
-    Raises:
-        UsageError: there is no such network.
-    """
-    for each in ranges:
-        if each.first >= len(networks):
-            has = f"it has N0000 to {networks[-1].name}" if networks else "it has none"
-            raise UsageError(f"no network {each.first} in the program: {has}")
-    if not ranges:
-        return list(networks)
-    return [
-        network for network in networks if any(each.first <= network.number <= each.last for each in ranges)
-    ]

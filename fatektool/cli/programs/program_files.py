@@ -143,6 +143,26 @@ def _project_of(backup: Backup, inventory: Path | None, voice: Voice) -> Path | 
     return found.pop() if len(found) == 1 else None
 
 
+def comments_at(
+    found: ProgramFile, connection: Connection, path: Path | None, voice: Voice, encoding: str | None = None
+) -> Comments:
+    """The comments of a PLC's program: of the project that is named, of the file, or of the inventory's.
+
+    Raises:
+        DataError: the project that the user names does not hold.
+    """
+    project = None if connection.entry is None else connection.entry.project
+    known = path is not None or found.project is not None or project is not None
+    together("encoding", holds=known, needs="--comments or a project")
+    named = comments_from(path, voice, encoding)
+    if named is None and found.project is None and project is not None:
+        try:
+            named = comments_from(project, voice, encoding)
+        except FatektoolError as error:
+            voice.warn(f"no comments: {error.message}")
+    return found.comments if named is None else named
+
+
 def comments_for(
     connection: Connection, path: Path | None, voice: Voice, encoding: str | None = None
 ) -> Mapping[str, str]:
