@@ -1,4 +1,4 @@
-"""What a protocol is to the rest of the house: requests to bytes, bytes to frames, frames to answers.
+"""What a protocol is to the rest of the package: requests to bytes, bytes to frames, frames to answers.
 
 A client holds one ``Codec`` and knows nothing else of the protocol it speaks, so that another
 protocol is another file.

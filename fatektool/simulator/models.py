@@ -77,7 +77,7 @@ class Model:
 
     @property
     def has_fbs_image(self) -> bool:
-        """True if its program is an FBs image, for which a very small ladder has no room."""
+        """True if its program is an FBs image, for which a very small ladder has no space."""
         return self.image is not None and self.ladder_words > CODE
 
 

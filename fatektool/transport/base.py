@@ -1,4 +1,4 @@
-"""What a medium is to the rest of the house, and how long a byte takes on a serial line.
+"""What a medium is to the rest of the package, and how long a byte takes on a serial line.
 
 Contract of a transport:
 

@@ -183,7 +183,7 @@ def _table(
     comments: Mapping[str, str],
     size: tuple[int, int],
 ) -> Any:
-    """What is on the terminal: as many rows as it has room for, and a word about the others.
+    """What is on the terminal: as many rows as fit, and how many more there are.
 
     Args:
         snapshot: this round's.
@@ -217,8 +217,8 @@ def _table(
     widest = max(map(len, comments.values()), default=0)
     remarks = min(max(_VALUE, widest), columns // 4) if comments else 0
     fits = max(1, columns - names - values - units - remarks - _GAPS - bool(comments))
-    room = max(1, lines - _AROUND)
-    for key, value in list(snapshot.values.items())[:room]:
+    space = max(1, lines - _AROUND)
+    for key, value in list(snapshot.values.items())[:space]:
         text = Text(shown(value))
         if key in before and before[key] != value:
             text = Text.assemble((text.plain, "bold reverse"), "*")
@@ -231,8 +231,8 @@ def _table(
     mode = {True: "RUN", False: "STOP", None: "mode unknown"}[snapshot.running]
     title = f"{snapshot.time}  {mode}  station {snapshot.station} on {snapshot.target}"
     parts: list[Any] = [Text(title, no_wrap=True, overflow="ellipsis"), table]
-    if len(snapshot.values) > room:
-        parts.append(Text(f"and {len(snapshot.values) - room} more"))
+    if len(snapshot.values) > space:
+        parts.append(Text(f"and {len(snapshot.values) - space} more"))
     return Group(*parts)
 
 

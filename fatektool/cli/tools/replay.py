@@ -85,7 +85,7 @@ def _named(request: Request) -> str:
 
 
 def _text(data: bytes) -> str:
-    """Characters if all of them can be read, else hex; no more than a line has room for."""
+    """Characters if all of them can be read, else hex; no more than a line has space for."""
     readable = all(0x20 < byte < 0x7F for byte in data)
     text = data.decode("ascii") if readable else data.hex().upper()
     return text if len(text) <= 40 else f"{text[:32]}… ({len(data)} bytes)"

@@ -71,7 +71,7 @@ def name_of(name: str, station: int) -> str:
 
 
 def start_of(name: str) -> str:
-    """As much of a file's name as the name of a safety copy has room for."""
+    """As much of a file's name as the name of a safety copy has space for."""
     known = "stdin" if name == STANDARD else name  # a name that begins with - is an option to others
     return os.fsencode(known)[:_LONGEST_NAME].decode(errors="ignore")
 

@@ -33,7 +33,7 @@ class FbsImage:
 
     Args:
         digits: behind ``FBS4`` in the header.
-        capacity: words of code that it has room for.
+        capacity: words of code that it has space for.
         pages: how many it gives out; those behind are refused.
     """
 

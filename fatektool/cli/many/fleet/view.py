@@ -92,10 +92,10 @@ class View:
     def _table(self, running: list[Turn[Any]], height: int, now: float) -> Text:
         from rich.text import Text
 
-        room = max(1, height - 3)
-        rows = [self._row(turn, now) for turn in running[:room]]
-        if len(running) > room:
-            rows.append(f"… {len(running) - room} more")
+        space = max(1, height - 3)
+        rows = [self._row(turn, now) for turn in running[:space]]
+        if len(running) > space:
+            rows.append(f"… {len(running) - space} more")
         not_well = f", {self._not_well} not ok" if self._not_well else ""
         rows.append(f"{self._job}: {self._ended} of {self._total} ended{not_well}")
         return Text("\n".join(rows), no_wrap=True, overflow="ellipsis")
