@@ -30,7 +30,7 @@ from fatektool.protocol.commands import (
     WriteRegisters,
 )
 from fatektool.protocol.elements import Element
-from fatektool.protocol.explain import Role
+from fatektool.protocol.explain import FrameRole
 from fatektool.protocol.fatek.mseries.codec import RESPONSE
 from fatektool.protocol.registry import new_explainer
 from tests.protocol.decoding import decoded
@@ -83,7 +83,7 @@ def look_at(
     assert stream.startswith(given_back)
     for frame in good:
         _say(codec, frame)
-    for role in (Role.EITHER, Role.REQUEST, Role.ANSWER):
+    for role in (FrameRole.EITHER, FrameRole.REQUEST, FrameRole.ANSWER):
         explained = list(new_explainer(codec.name).explain(stream, role))
         assert b"".join(part.raw for part in explained) == stream
         assert all(b"".join(field.raw for field in part.fields) == part.raw for part in explained)

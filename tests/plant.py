@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     import pytest
 
-    from fatektool.simulator.elements import Kind
+    from fatektool.simulator.elements import SymbolKind
     from fatektool.simulator.plc import SimulatedPlc
     from tests.cli.running import Cli, Done
 
@@ -75,7 +75,7 @@ def with_holes(
     memory = made.device.memory
     check = memory.check
 
-    def refusing(kind: Kind, address: int, count: int) -> int:
+    def refusing(kind: SymbolKind, address: int, count: int) -> int:
         end = check(kind, address, count)
         if kind.area == "R" and not holes.isdisjoint(range(address, end)):
             raise Refusal(code)

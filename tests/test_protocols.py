@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from fatektool.address import DEFAULT_FORMATS, default_format
-from fatektool.protocol.explain import Role
+from fatektool.protocol.explain import FrameRole
 from fatektool.protocol.fatek.facon.codec import FACON
 from fatektool.protocol.fatek.mseries.codec import MSERIES
 from fatektool.protocol.modbus.ascii import ASCII
@@ -64,7 +64,7 @@ def test_the_parts_of_a_protocol_understand_each_other(name: str) -> None:
     codec.parse_answer(codec.probe, frame)
     explainer = new_explainer(name)
     assert explainer.form
-    for raw, role in ((asked, Role.REQUEST), (answered, Role.ANSWER)):
+    for raw, role in ((asked, FrameRole.REQUEST), (answered, FrameRole.ANSWER)):
         (shown,) = explainer.explain(raw, role)
         assert (shown.role, shown.raw, shown.station, shown.fault) == (role, raw, 7, None)
 

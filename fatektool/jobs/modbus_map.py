@@ -8,14 +8,14 @@ from typing import Final
 
 from fatektool.errors import UsageError
 from fatektool.protocol.elements import Element
-from fatektool.protocol.modbus.map import Area, ModbusMap, Place, Reference
+from fatektool.protocol.modbus.map import ModbusArea, ModbusMap, Reference, ReferenceRun
 
 _DIGITS: Final = re.compile(r"\d+", re.ASCII)
 _FUNCTIONS: Final = {
-    Area.COIL: ("01", "05", "0F"),
-    Area.DISCRETE_INPUT: ("02",),
-    Area.INPUT_REGISTER: ("04",),
-    Area.HOLDING_REGISTER: ("03", "06", "10"),
+    ModbusArea.COIL: ("01", "05", "0F"),
+    ModbusArea.DISCRETE_INPUT: ("02",),
+    ModbusArea.INPUT_REGISTER: ("04",),
+    ModbusArea.HOLDING_REGISTER: ("03", "06", "10"),
 }
 
 
@@ -31,7 +31,7 @@ class MapEntry:
     """
 
     element: Element
-    place: Place
+    place: ReferenceRun
     last_element: Element | None = None
     half: str | None = None
 
@@ -63,7 +63,7 @@ def find_entry(name: str, modbus_map: ModbusMap) -> MapEntry:
         if found is None:
             ranges = ", ".join(f"{each.reference}-{each.last_reference}" for each in all_entries(modbus_map))
             raise UsageError(f"{reference}: no element of the PLC: the {modbus_map.name} map has {ranges}")
-        return MapEntry(found.element, Place(reference.area, reference.offset, 1), half=found.half)
+        return MapEntry(found.element, ReferenceRun(reference.area, reference.offset, 1), half=found.half)
     element = Element.parse(name)
     return MapEntry(element, modbus_map.place(element))
 
@@ -73,7 +73,7 @@ def all_entries(modbus_map: ModbusMap) -> list[MapEntry]:
     return [
         MapEntry(
             Element(each.symbol, each.first),
-            Place(each.area, each.offset, each.count * each.width),
+            ReferenceRun(each.area, each.offset, each.count * each.width),
             Element(each.symbol, each.first + each.count - 1),
         )
         for each in modbus_map.stretches

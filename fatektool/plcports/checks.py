@@ -23,7 +23,7 @@ from fatektool.plcports.results import Fault
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from fatektool.plcports.operands import DataType, Operand
+    from fatektool.plcports.operands import DataType, TableOperand
     from fatektool.plcports.rows import SharedBlock, Transaction
 
 READ: Final = 1
@@ -100,7 +100,7 @@ def _length(number: int, length: int, most: int) -> Iterator[Fault]:
 
 
 def _operand(
-    number: int, name: str, operand: Operand, types: Mapping[int, DataType], length: int
+    number: int, name: str, operand: TableOperand, types: Mapping[int, DataType], length: int
 ) -> Iterator[Fault]:
     kind = types.get(operand.type)
     if kind is None:

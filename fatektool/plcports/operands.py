@@ -98,7 +98,7 @@ _CODED: Final = re.compile(r"([0-9]{1,3}):([0-9]{1,5})", re.ASCII)
 
 
 @dataclass(frozen=True, slots=True)
-class Operand:
+class TableOperand:
     """A type and a reference.
 
     Attributes:
@@ -122,7 +122,7 @@ class Operand:
         return f"{self.type}:{self.reference}" if found is None else found.written(self.reference)
 
     @classmethod
-    def parse(cls, text: str, types: Mapping[int, DataType]) -> Operand:
+    def parse(cls, text: str, types: Mapping[int, DataType]) -> TableOperand:
         """Read an operand as people write it, by these types.
 
         The reference need not be in the type's range: that is for the check to say.

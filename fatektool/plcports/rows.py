@@ -15,7 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from fatektool.plcports.operands import Operand, require_range
+from fatektool.plcports.operands import TableOperand, require_range
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -53,8 +53,8 @@ class Transaction:
     station: int
     command: int
     length: int
-    master: Operand
-    slave: Operand
+    master: TableOperand
+    slave: TableOperand
     high_bytes: tuple[int, ...] = _NO_HIGH_BYTES
 
     def __post_init__(self) -> None:
@@ -76,8 +76,8 @@ class Transaction:
             station & 0xFF,
             command & 0xFF,
             length & 0xFF,
-            Operand(master & 0xFF, master_reference),
-            Operand(slave & 0xFF, slave_reference),
+            TableOperand(master & 0xFF, master_reference),
+            TableOperand(slave & 0xFF, slave_reference),
             tuple(word >> 8 for word in (station, command, length, master, slave)),
         )
 
@@ -101,7 +101,7 @@ class SharedBlock:
     station: int
     command: int
     length: int
-    data: Operand
+    data: TableOperand
     reserved: tuple[int, ...] = (0, 0)
     high_bytes: tuple[int, ...] = _NO_HIGH_BYTES_MD3
 
@@ -126,7 +126,7 @@ class SharedBlock:
             station & 0xFF,
             command & 0xFF,
             length & 0xFF,
-            Operand(data & 0xFF, reference),
+            TableOperand(data & 0xFF, reference),
             tuple(reserved),
             tuple(word >> 8 for word in (station, command, length, data)),
         )

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Kind:
+class ElementKind:
     """A kind of element.
 
     Attributes:
@@ -50,12 +50,12 @@ class Kind:
         return 2 if self.bits == 32 else 1
 
 
-def _kinds() -> dict[str, Kind]:
-    kinds: dict[str, Kind] = {}
+def _kinds() -> dict[str, ElementKind]:
+    kinds: dict[str, ElementKind] = {}
     for symbol in "XYMSTC":
-        kinds[symbol] = Kind(symbol, 1, 1, 1, 9999, 4)
-        kinds[f"W{symbol}"] = Kind(f"W{symbol}", 16, 16, 8, 9984, 4)
-        kinds[f"DW{symbol}"] = Kind(f"DW{symbol}", 32, 32, 8, 9968, 4)
+        kinds[symbol] = ElementKind(symbol, 1, 1, 1, 9999, 4)
+        kinds[f"W{symbol}"] = ElementKind(f"W{symbol}", 16, 16, 8, 9984, 4)
+        kinds[f"DW{symbol}"] = ElementKind(f"DW{symbol}", 32, 32, 8, 9968, 4)
     for symbol, last, digits in (
         ("RT", 9999, 4),
         ("RC", 9999, 4),
@@ -63,12 +63,12 @@ def _kinds() -> dict[str, Kind]:
         ("D", 65535, 5),
         ("F", 65535, 5),
     ):
-        kinds[symbol] = Kind(symbol, 16, 1, 1, last, digits)
-        kinds[f"D{symbol}"] = Kind(f"D{symbol}", 32, 2, 1, last - 1, digits)
+        kinds[symbol] = ElementKind(symbol, 16, 1, 1, last, digits)
+        kinds[f"D{symbol}"] = ElementKind(f"D{symbol}", 32, 2, 1, last - 1, digits)
     return kinds
 
 
-KINDS: Final[dict[str, Kind]] = _kinds()
+KINDS: Final[dict[str, ElementKind]] = _kinds()
 
 _WRITTEN = re.compile(r"([A-Za-z]{1,3})([0-9]{1,12})", re.ASCII)
 
@@ -106,7 +106,7 @@ class Element:
             )
 
     @property
-    def kind(self) -> Kind:
+    def kind(self) -> ElementKind:
         """The element's kind."""
         return KINDS[self.symbol]
 

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 
-class Role(Enum):
+class FrameRole(Enum):
     """What a frame is in the conversation."""
 
     REQUEST = "request"
@@ -48,7 +48,7 @@ class Explanation:
         fault: what is wrong, None if nothing is.
     """
 
-    role: Role
+    role: FrameRole
     raw: bytes
     fields: tuple[Field, ...]
     station: int | None = None
@@ -68,7 +68,7 @@ class Explainer(Protocol):
     def binary(self) -> bool:
         """True if its bytes are better shown as hex than as characters."""
 
-    def explain(self, data: bytes, role: Role = Role.EITHER) -> Iterator[Explanation]:
+    def explain(self, data: bytes, role: FrameRole = FrameRole.EITHER) -> Iterator[Explanation]:
         """Explain all frames in a piece of the conversation, and the bytes that are none.
 
         Args:

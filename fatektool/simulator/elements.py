@@ -25,7 +25,7 @@ REGISTER_AREAS = ("R", "D", "F", "RT", "RC")
 
 
 @dataclass(frozen=True, slots=True)
-class Kind:
+class SymbolKind:
     """One symbol's meaning.
 
     Args:
@@ -48,22 +48,22 @@ class Kind:
         return 2 if self.bits == 32 else 1
 
 
-def _kinds() -> dict[str, Kind]:
+def _kinds() -> dict[str, SymbolKind]:
     kinds = []
     for area in DISCRETE_AREAS:
-        kinds.append(Kind(area, area, 1, 1, packed=False))
-        kinds.append(Kind(f"W{area}", area, 16, 16, packed=True))
-        kinds.append(Kind(f"DW{area}", area, 32, 32, packed=True))
+        kinds.append(SymbolKind(area, area, 1, 1, packed=False))
+        kinds.append(SymbolKind(f"W{area}", area, 16, 16, packed=True))
+        kinds.append(SymbolKind(f"DW{area}", area, 32, 32, packed=True))
     for area in REGISTER_AREAS:
-        kinds.append(Kind(area, area, 16, 1, packed=False))
-        kinds.append(Kind(f"D{area}", area, 32, 2, packed=False))
+        kinds.append(SymbolKind(area, area, 16, 1, packed=False))
+        kinds.append(SymbolKind(f"D{area}", area, 32, 2, packed=False))
     return {kind.symbol: kind for kind in kinds}
 
 
 KINDS = _kinds()
 
 
-def kind_of(symbol: str, *widths: int) -> Kind:
+def kind_of(symbol: str, *widths: int) -> SymbolKind:
     """The kind of ``symbol``; refuses an unknown one, and one whose width is none of ``widths``."""
     kind = KINDS.get(symbol)
     if kind is None or (widths and kind.bits not in widths):

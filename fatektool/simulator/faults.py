@@ -34,7 +34,7 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from fatektool.errors import UsageError
-from fatektool.simulator.slaves.base import BROADCAST, Request, RequestKind, Slave, addressed
+from fatektool.simulator.slaves.base import BROADCAST, RequestFrame, RequestKind, Slave, addressed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -151,7 +151,7 @@ class Faults:
         """Whether the chunk of bytes that arrives is sent back."""
         return self._strikes("echo")
 
-    def answer(self, slave: Slave, request: Request) -> bytes | None:
+    def answer(self, slave: Slave, request: RequestFrame) -> bytes | None:
         """Have ``request`` executed, or not: the power may go, a write may be a lie."""
         if request.kind in {RequestKind.OTHER, RequestKind.LOOPBACK}:
             return slave.answer(request)
@@ -171,7 +171,7 @@ class Faults:
         finally:
             plc.acknowledge_only = False
 
-    def spoil(self, slave: Slave, request: Request, answer: bytes) -> SpoiledAnswer:
+    def spoil(self, slave: Slave, request: RequestFrame, answer: bytes) -> SpoiledAnswer:
         """Do to an answer what was drawn for it."""
         if self._strikes("drop"):
             return SpoiledAnswer([])
@@ -194,7 +194,7 @@ class Faults:
         delay_s = self.slow_s if self._strikes("slow") else 0.0
         return SpoiledAnswer(copies, delay_s, late=self._strikes("late"))
 
-    def garbage(self, slave: Slave, request: Request) -> bytes | None:
+    def garbage(self, slave: Slave, request: RequestFrame) -> bytes | None:
         """What comes back for a request that nobody could understand; None if it was understood.
 
         It is empty for a broadcast, which nobody answers, understood or not.

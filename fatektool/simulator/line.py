@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fatektool.simulator.faults import Faults
-    from fatektool.simulator.slaves.base import Request, Slave
+    from fatektool.simulator.slaves.base import RequestFrame, Slave
 
 BITS_PER_CHAR = 10
 """7E1 and 8N1: start, seven or eight bits, parity or none, stop."""
@@ -105,7 +105,7 @@ class SimulatedLine:
         self._slave.reset()
         return due
 
-    def _serve(self, request: Request, ready: float, due: list[tuple[float, bytes]]) -> None:
+    def _serve(self, request: RequestFrame, ready: float, due: list[tuple[float, bytes]]) -> None:
         faults = self._faults
         garbage = None if faults is None else faults.garbage(self._slave, request)
         if garbage is not None:

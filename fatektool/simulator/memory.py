@@ -22,7 +22,7 @@ from array import array
 from enum import IntEnum
 from typing import TYPE_CHECKING
 
-from fatektool.simulator.elements import Kind, kind_of
+from fatektool.simulator.elements import SymbolKind, kind_of
 from fatektool.simulator.refusal import Refusal, RefusalCode
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ class DiscreteAction(IntEnum):
     RESET = 4
 
 
-class Memory:
+class SimulatedMemory:
     """The elements of one PLC, all zero and enabled at first.
 
     ``revision`` grows with every write that was made.
@@ -76,7 +76,7 @@ class Memory:
         self.revision = 0
         self._sizes = counts | {area: len(table) for area, table in self.registers.items()}
 
-    def check(self, kind: Kind, address: int, count: int) -> int:
+    def check(self, kind: SymbolKind, address: int, count: int) -> int:
         """The end in the area of ``count`` elements from ``address``; refuses what is past the model."""
         end = address + count * kind.step
         if address < 0 or end > self._sizes[kind.area] or (kind.packed and address % _PACKED_MULTIPLE):

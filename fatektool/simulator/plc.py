@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fatektool.simulator.memory import DiscreteAction, Memory
+from fatektool.simulator.memory import DiscreteAction, SimulatedMemory
 from fatektool.simulator.models import DEFAULT_MODEL, MODELS, PAGE_BYTES, Model
 from fatektool.simulator.program.demonstration import program_of
 from fatektool.simulator.refusal import Refusal, RefusalCode
@@ -103,7 +103,7 @@ class SimulatedPlc:
             raise ValueError(f"a PLC's station is 1 to {MAX_STATION}, not {station}")
         self.station = station
         self.model = model
-        self.memory = Memory(model)
+        self.memory = SimulatedMemory(model)
         self.pages = program_of(model) if pages is None else list(pages)
         if len(self.pages) != model.page_count or any(len(page) != PAGE_BYTES for page in self.pages):
             raise ValueError(f"expected {model.page_count} pages of {PAGE_BYTES} bytes for {model.name}")

@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from fatektool.errors import DataError, UsageError
 from fatektool.protocols import DEFAULT
 from fatektool.simulator.build import build_plcs
-from fatektool.simulator.slaves.base import BROADCAST, Request, RequestKind
+from fatektool.simulator.slaves.base import BROADCAST, RequestFrame, RequestKind
 from fatektool.simulator.slaves.registry import SLAVES
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ class Recorded(NamedTuple):
 class _Exchange:
     """A request, when it was asked, and what came before the next: seconds after it, bytes."""
 
-    request: Request
+    request: RequestFrame
     time_s: float
     heard: list[tuple[float, bytes]] = field(default_factory=list)
 
@@ -86,7 +86,7 @@ class Replay:
         protocol: str = DEFAULT,
         *,
         speed: float = 1.0,
-        on_unknown: Callable[[Request], None] = lambda _: None,
+        on_unknown: Callable[[RequestFrame], None] = lambda _: None,
     ) -> None:
         if not speed >= 0:  # refuses NaN too
             raise UsageError(f"a replay's speed is 0 or more, not {speed}")
@@ -97,7 +97,7 @@ class Replay:
                 f"no {protocol} request in the recording",
                 hint="if another protocol was recorded, name it with --protocol",
             )
-        self.unknown: dict[Request, int] = {}
+        self.unknown: dict[RequestFrame, int] = {}
         self.unknown_count = 0
         self._make_slave = make_slave
         self._pace = 1 / speed if speed else 0.0
@@ -119,7 +119,7 @@ class Replay:
         del whole_answers  # a recorded answer is always given in the pieces in which it was recorded
         return ReplayLine(self, self._make_slave(self._plcs))
 
-    def answer(self, request: Request) -> list[tuple[float, bytes]]:
+    def answer(self, request: RequestFrame) -> list[tuple[float, bytes]]:
         """What comes back: seconds after the request, bytes. Nothing for a silence."""
         answers = self._left.get(_question(request))
         if answers is None:
@@ -149,10 +149,10 @@ class Replay:
         if good is not None:
             answers.append(good)
 
-    def _echo(self, request: Request) -> bytes:
+    def _echo(self, request: RequestFrame) -> bytes:
         return self._echoes.answer(request) or b""
 
-    def _count_unknown(self, request: Request) -> None:
+    def _count_unknown(self, request: RequestFrame) -> None:
         self.unknown_count += 1
         named = request._replace(end=0)
         if named in self.unknown or len(self.unknown) < _MOST_NAMES:
@@ -192,7 +192,7 @@ class ReplayLine:
         return due
 
 
-def _question(request: Request) -> object:
+def _question(request: RequestFrame) -> object:
     """What makes two requests the same one."""
     return (request.station, request.kind) if request.kind is RequestKind.LOOPBACK else request.raw
 

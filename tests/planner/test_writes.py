@@ -23,7 +23,7 @@ from tests.plcs import simulated
 from tests.protocol.decoding import request_of
 
 if TYPE_CHECKING:
-    from fatektool.simulator.memory import Memory
+    from fatektool.simulator.memory import SimulatedMemory
 
 AREAS = {
     "Y": 256,
@@ -53,7 +53,7 @@ def plan_of(elements: list[Element], turnaround: float = 0.0) -> list[Request[No
     return plan_writes([(element, 0) for element in elements], FACON, turnaround=turnaround)
 
 
-def contents(memory: Memory) -> dict[str, list[int]]:
+def contents(memory: SimulatedMemory) -> dict[str, list[int]]:
     """All of it."""
     return {area: list(table) for area, table in [*memory.status.items(), *memory.registers.items()]}
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from fatektool.plcports.kinds import TableKind
 from fatektool.plcports.messages import MessageTable
-from fatektool.plcports.operands import Operand
+from fatektool.plcports.operands import TableOperand
 from fatektool.plcports.rows import SharedBlock, Transaction
 from fatektool.plcports.tables import ClinkTable, HighSpeedTable, MbusTable, Table
 
@@ -26,8 +26,8 @@ TABLES: dict[str, tuple[TableKind, tuple[int, ...], Table]] = {
         (2, *READ_R, *WRITE_M),
         ClinkTable(
             (
-                Transaction(2, 1, 4, Operand(12, 0), Operand(12, 100)),
-                Transaction(0, 2, 64, Operand(2, 8), Operand(1, 16)),
+                Transaction(2, 1, 4, TableOperand(12, 0), TableOperand(12, 100)),
+                Transaction(0, 2, 64, TableOperand(2, 8), TableOperand(1, 16)),
             )
         ),
     ),
@@ -35,7 +35,11 @@ TABLES: dict[str, tuple[TableKind, tuple[int, ...], Table]] = {
         TableKind.MD0,
         (0x1101, 0x2202, 0x3301, 0x4404, 0x550C, 0x0234, 0x660D, 0x0ABC),
         ClinkTable(
-            (Transaction(2, 1, 4, Operand(12, 0x0234), Operand(13, 0xABC), (0x22, 0x33, 0x44, 0x55, 0x66)),),
+            (
+                Transaction(
+                    2, 1, 4, TableOperand(12, 0x0234), TableOperand(13, 0xABC), (0x22, 0x33, 0x44, 0x55, 0x66)
+                ),
+            ),
             0x11,
         ),
     ),
@@ -45,8 +49,8 @@ TABLES: dict[str, tuple[TableKind, tuple[int, ...], Table]] = {
         (2, 1, 4, 32, 12, 0, 0, 0, 2, 4, 16, 12, 32, 0xDEAD, 0xBEEF),
         HighSpeedTable(
             (
-                SharedBlock(1, 4, 32, Operand(12, 0)),
-                SharedBlock(2, 4, 16, Operand(12, 32), (0xDEAD, 0xBEEF)),
+                SharedBlock(1, 4, 32, TableOperand(12, 0)),
+                SharedBlock(2, 4, 16, TableOperand(12, 32), (0xDEAD, 0xBEEF)),
             )
         ),
     ),
@@ -55,8 +59,8 @@ TABLES: dict[str, tuple[TableKind, tuple[int, ...], Table]] = {
         (0xA550, 0x0702, 1, 1, 10, 12, 0, 4, 1, 3, 3, 1, 1, 7, 0, 65535, 0x5A5A),
         MbusTable(
             (
-                Transaction(1, 1, 10, Operand(12, 0), Operand(4, 1)),
-                Transaction(3, 3, 1, Operand(1, 7), Operand(0, 65535)),
+                Transaction(1, 1, 10, TableOperand(12, 0), TableOperand(4, 1)),
+                Transaction(3, 3, 1, TableOperand(1, 7), TableOperand(0, 65535)),
             ),
             reserved=0x5A5A,
         ),
@@ -88,7 +92,7 @@ def put(plant: Plant, first: str, words: tuple[int, ...]) -> None:
 
 byte = st.integers(0, 255)
 word = st.integers(0, 0xFFFF)
-operand = st.builds(Operand, byte, word)
+operand = st.builds(TableOperand, byte, word)
 
 
 def high_bytes(count: int) -> st.SearchStrategy[tuple[int, ...]]:

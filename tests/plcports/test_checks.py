@@ -7,7 +7,7 @@ import pytest
 from fatektool.plcports.codes import CODES, TRANSACTIONS, meaning, next_step
 from fatektool.plcports.kinds import TableKind
 from fatektool.plcports.messages import MessageTable
-from fatektool.plcports.operands import Operand
+from fatektool.plcports.operands import TableOperand
 from fatektool.plcports.rows import SharedBlock, Transaction
 from fatektool.plcports.tables import ClinkTable, HighSpeedTable, MbusTable
 from tests.rows import each
@@ -39,18 +39,20 @@ def ranges(text: str) -> list[tuple[int, int, int, int]]:
 
 def md0(*values: int) -> list[int | None]:
     station, command, length, *rest = values
-    master, slave = Operand(*rest[:2]), Operand(*rest[2:])
+    master, slave = TableOperand(*rest[:2]), TableOperand(*rest[2:])
     return [f.code for f in ClinkTable((Transaction(station, command, length, master, slave),)).faults()]
 
 
 def md3(*values: int) -> list[int | None]:
     station, command, length, *rest = values
-    return [f.code for f in HighSpeedTable((SharedBlock(station, command, length, Operand(*rest)),)).faults()]
+    return [
+        f.code for f in HighSpeedTable((SharedBlock(station, command, length, TableOperand(*rest)),)).faults()
+    ]
 
 
 def mbus(*values: int) -> list[int | None]:
     station, command, length, *rest = values
-    master, slave = Operand(*rest[:2]), Operand(*rest[2:])
+    master, slave = TableOperand(*rest[:2]), TableOperand(*rest[2:])
     return [f.code for f in MbusTable((Transaction(station, command, length, master, slave),)).faults()]
 
 
@@ -158,7 +160,7 @@ def test_the_other_columns_of_mbus() -> None:
 
 
 def test_the_marks_of_mbus() -> None:
-    row = Transaction(1, 1, 1, Operand(12, 0), Operand(4, 1))
+    row = Transaction(1, 1, 1, TableOperand(12, 0), TableOperand(4, 1))
     assert MbusTable((row,)).faults() == []
     assert [(f.code, f.reason) for f in MbusTable((row,), mark=0xA551, row_words=8).faults()] == [
         (8, "SR+0: expected A550, got A551"), (8, "SR+1: expected a high byte of 07, got 08"),
@@ -185,7 +187,7 @@ def test_messages(receiver: bool) -> None:
 
 
 def test_a_fault_names_its_row() -> None:
-    good, wrong = Operand(12, 0), Operand(12, 3840)
+    good, wrong = TableOperand(12, 0), TableOperand(12, 3840)
     rows = [Transaction(1, 1, 1, good, good), Transaction(1, 1, 1, good, wrong)]
     (fault,) = ClinkTable(tuple(rows)).faults()
     assert (fault.row, fault.code) == (1, 5)

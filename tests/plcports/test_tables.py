@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from fatektool.errors import DataError, UsageError
 from fatektool.plcports.kinds import TableKind
 from fatektool.plcports.messages import MAX_MESSAGE, MessageTable
-from fatektool.plcports.operands import CLINK_TYPES, MBUS_MASTER_TYPES, MBUS_SLAVE_TYPES, Operand
+from fatektool.plcports.operands import CLINK_TYPES, MBUS_MASTER_TYPES, MBUS_SLAVE_TYPES, TableOperand
 from fatektool.plcports.results import Fault
 from fatektool.plcports.rows import SharedBlock, Transaction
 from fatektool.plcports.tables import ClinkTable, Table, kind_of, parse_table, place_faults, table_words
@@ -87,9 +87,9 @@ def test_data_are_the_low_bytes() -> None:
     ],
 )  # fmt: skip
 def test_operands_of_clink(text: str, code: int, reference: int) -> None:
-    assert Operand.parse(text, CLINK_TYPES) == Operand(code, reference)
+    assert TableOperand.parse(text, CLINK_TYPES) == TableOperand(code, reference)
     canonical = text.upper().replace("RT", "TR").replace("RC", "CR")
-    assert Operand(code, reference).written(CLINK_TYPES) == canonical
+    assert TableOperand(code, reference).written(CLINK_TYPES) == canonical
 
 
 @pytest.mark.parametrize(
@@ -97,14 +97,14 @@ def test_operands_of_clink(text: str, code: int, reference: int) -> None:
     [("000001", 0, 1), ("100001", 1, 1), ("365535", 3, 65535), ("400101", 4, 101), ("40101", 4, 101)],
 )
 def test_operands_of_modbus_slaves(text: str, code: int, reference: int) -> None:
-    assert Operand.parse(text, MBUS_SLAVE_TYPES) == Operand(code, reference)
-    assert Operand(code, reference).written(MBUS_SLAVE_TYPES) == f"{text[0]}{reference:05}"
+    assert TableOperand.parse(text, MBUS_SLAVE_TYPES) == TableOperand(code, reference)
+    assert TableOperand(code, reference).written(MBUS_SLAVE_TYPES) == f"{text[0]}{reference:05}"
 
 
-@given(st.builds(Operand, st.integers(0, 255), st.integers(0, 0xFFFF)))
-def test_operands_both_ways(operand: Operand) -> None:
+@given(st.builds(TableOperand, st.integers(0, 255), st.integers(0, 0xFFFF)))
+def test_operands_both_ways(operand: TableOperand) -> None:
     for types in (CLINK_TYPES, MBUS_MASTER_TYPES, MBUS_SLAVE_TYPES):
-        assert Operand.parse(operand.written(types), types) == operand
+        assert TableOperand.parse(operand.written(types), types) == operand
 
 
 @pytest.mark.parametrize(
@@ -112,17 +112,17 @@ def test_operands_both_ways(operand: Operand) -> None:
 )
 def test_no_operand(text: str) -> None:
     with pytest.raises(UsageError):
-        Operand.parse(text, CLINK_TYPES)
+        TableOperand.parse(text, CLINK_TYPES)
 
 
 @pytest.mark.parametrize("text", ["R100", "200001", "4001", "4000001", "466000", "X0"])
 def test_no_operand_of_a_modbus_slave(text: str) -> None:
     with pytest.raises(UsageError):
-        Operand.parse(text, MBUS_SLAVE_TYPES)
+        TableOperand.parse(text, MBUS_SLAVE_TYPES)
 
 
 def test_what_fits_no_word() -> None:
-    good = Operand(12, 0)
+    good = TableOperand(12, 0)
     for values in ((256, 1, 1), (1, -1, 1), (1, 1, 256)):
         with pytest.raises(UsageError):
             Transaction(*values, good, good)

@@ -17,7 +17,7 @@ from fatektool.protocol.commands import (
     WritePage,
 )
 from fatektool.protocol.elements import Element
-from fatektool.protocol.explain import Explanation, Role
+from fatektool.protocol.explain import Explanation, FrameRole
 from fatektool.protocol.fatek.facon.codec import FACON
 from fatektool.protocol.registry import new_explainer
 from tests.protocol.decoding import framed
@@ -29,10 +29,10 @@ if TYPE_CHECKING:
 
 PAGE = bytes(range(128))
 R12 = ReadRegisters(Element("R", 12), 3)
-roles = st.sampled_from([Role.REQUEST, Role.ANSWER, Role.EITHER])
+roles = st.sampled_from([FrameRole.REQUEST, FrameRole.ANSWER, FrameRole.EITHER])
 
 
-def explained(*pieces: tuple[bytes, Role]) -> list[Explanation]:
+def explained(*pieces: tuple[bytes, FrameRole]) -> list[Explanation]:
     """A conversation explained; what must hold for any is asserted on the way."""
     explainer = new_explainer("facon")
     found = []
@@ -43,14 +43,14 @@ def explained(*pieces: tuple[bytes, Role]) -> list[Explanation]:
             assert b"".join(field.raw for field in explanation.fields) == explanation.raw
             assert all(field.name for field in explanation.fields)
             assert (explanation.station is None) == (explanation.command is None)
-            assert (explanation.role is Role.BROKEN) == (explanation.checksum_ok is not True)
-            if explanation.role is Role.BROKEN:
+            assert (explanation.role is FrameRole.BROKEN) == (explanation.checksum_ok is not True)
+            if explanation.role is FrameRole.BROKEN:
                 assert explanation.fault
         found += here
     return found
 
 
-def one(raw: bytes, role: Role = Role.EITHER) -> Explanation:
+def one(raw: bytes, role: FrameRole = FrameRole.EITHER) -> Explanation:
     (explanation,) = explained((raw, role))
     return explanation
 
@@ -67,8 +67,8 @@ def data_fields(explanation: Explanation) -> list[tuple[str, str, str]]:
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=NAMES)
 def test_examples(example: Example) -> None:
-    asks, answers = explained((example.asks, Role.REQUEST), (example.answers, Role.ANSWER))
-    assert (asks.role, answers.role) == (Role.REQUEST, Role.ANSWER)
+    asks, answers = explained((example.asks, FrameRole.REQUEST), (example.answers, FrameRole.ANSWER))
+    assert (asks.role, answers.role) == (FrameRole.REQUEST, FrameRole.ANSWER)
     for explanation in (asks, answers):
         assert (explanation.station, explanation.command) == (1, example.request.command)
         assert explanation.checksum_ok
@@ -79,10 +79,10 @@ def test_examples(example: Example) -> None:
 @pytest.mark.parametrize("example", EXAMPLES, ids=NAMES)
 def test_examples_typed_in_a_row(example: Example) -> None:
     """Without a direction, in one piece, request and answer are told apart but where they are the same."""
-    asks, answers = explained((example.asks + example.answers, Role.EITHER))
+    asks, answers = explained((example.asks + example.answers, FrameRole.EITHER))
     either = isinstance(example.request, RunStop | Loopback)
-    assert asks.role is (Role.EITHER if either else Role.REQUEST)
-    assert answers.role is Role.ANSWER
+    assert asks.role is (FrameRole.EITHER if either else FrameRole.REQUEST)
+    assert answers.role is FrameRole.ANSWER
     assert asks.fault is None
     assert answers.fault is None
 
@@ -174,7 +174,7 @@ SHOWN = {
 @pytest.mark.parametrize("name", SHOWN)
 def test_fields(name: str) -> None:
     example = EXAMPLES[NAMES.index(name)]
-    asks, answers = explained((example.asks, Role.REQUEST), (example.answers, Role.ANSWER))
+    asks, answers = explained((example.asks, FrameRole.REQUEST), (example.answers, FrameRole.ANSWER))
     assert (data_fields(asks), data_fields(answers)) == SHOWN[name]
 
 
@@ -223,10 +223,10 @@ def test_pages() -> None:
 @pytest.mark.parametrize("request_", [ReadPage(1), ReadDetailedStatus()])
 def test_an_answer_without_error_character(request_: Request[Any]) -> None:
     size = {0x4F: 256, 0x53: 128}[request_.command]
-    bare = one(framed(b"01%02X" % request_.command + size * b"0"), Role.ANSWER)
+    bare = one(framed(b"01%02X" % request_.command + size * b"0"), FrameRole.ANSWER)
     assert bare.fault is None
     assert "error" not in [field[0] for field in data_fields(bare)]
-    whole = one(framed(b"01%02X" % request_.command + (size + 1) * b"0"), Role.ANSWER)
+    whole = one(framed(b"01%02X" % request_.command + (size + 1) * b"0"), FrameRole.ANSWER)
     assert data_fields(whole)[0] == ("error", "0", "none")
 
 
@@ -234,7 +234,7 @@ def test_an_answer_without_error_character(request_: Request[Any]) -> None:
 
 
 def test_an_answer_alone_has_no_names() -> None:
-    assert data_fields(one(EXAMPLES[6].answers, Role.ANSWER)) == [
+    assert data_fields(one(EXAMPLES[6].answers, FrameRole.ANSWER)) == [
         ("error", "0", "none"),
         ("values", "10A57FC40001", "of elements that the request names"),
     ]
@@ -244,7 +244,7 @@ def test_the_request_of_another_station_or_command_names_nothing() -> None:
     other_station = FACON.encode(2, R12)
     other_command = FACON.encode(1, EXAMPLES[4].request)
     for asked in (other_station, other_command):
-        *_, answers = explained((asked, Role.REQUEST), (EXAMPLES[6].answers, Role.ANSWER))
+        *_, answers = explained((asked, FrameRole.REQUEST), (EXAMPLES[6].answers, FrameRole.ANSWER))
         assert data_fields(answers)[1][0] == "values"
 
 
@@ -252,8 +252,8 @@ def test_stations_are_kept_apart() -> None:
     other = ReadRegisters(Element("D", 7), 3)
     values = (1, 2, 3)
     *_, first, second = explained(
-        (FACON.encode(1, R12) + FACON.encode(2, other), Role.REQUEST),
-        (FACON.encode_answer(2, other, values) + FACON.encode_answer(1, R12, values), Role.ANSWER),
+        (FACON.encode(1, R12) + FACON.encode(2, other), FrameRole.REQUEST),
+        (FACON.encode_answer(2, other, values) + FACON.encode_answer(1, R12, values), FrameRole.ANSWER),
     )
     assert [field[0] for field in data_fields(first)[1:]] == ["D7", "D8", "D9"]
     assert [field[0] for field in data_fields(second)[1:]] == ["R12", "R13", "R14"]
@@ -261,19 +261,19 @@ def test_stations_are_kept_apart() -> None:
 
 def test_a_request_names_one_answer() -> None:
     *_, second = explained(
-        (EXAMPLES[6].asks, Role.REQUEST),
-        (EXAMPLES[6].answers, Role.ANSWER),
-        (EXAMPLES[6].answers, Role.ANSWER),
+        (EXAMPLES[6].asks, FrameRole.REQUEST),
+        (EXAMPLES[6].answers, FrameRole.ANSWER),
+        (EXAMPLES[6].answers, FrameRole.ANSWER),
     )
     assert data_fields(second)[1][0] == "values"
 
 
-@pytest.mark.parametrize("role", [Role.ANSWER, Role.EITHER])
-def test_an_answer_that_does_not_fit_its_request_is_called_so(role: Role) -> None:
+@pytest.mark.parametrize("role", [FrameRole.ANSWER, FrameRole.EITHER])
+def test_an_answer_that_does_not_fit_its_request_is_called_so(role: FrameRole) -> None:
     """It came late, from an earlier request; the request still waits for its own."""
     late = FACON.encode_answer(1, ReadRegisters(Element("R", 0), 1), (7,))
     _, stray, answers = explained(
-        (FACON.encode(1, R12), Role.REQUEST), (late, role), (EXAMPLES[6].answers, role)
+        (FACON.encode(1, R12), FrameRole.REQUEST), (late, role), (EXAMPLES[6].answers, role)
     )
     assert stray.fault == "expected 12 characters of values, as was asked, got 4"
     assert [field[0] for field in data_fields(answers)[1:]] == ["R12", "R13", "R14"]
@@ -282,8 +282,10 @@ def test_an_answer_that_does_not_fit_its_request_is_called_so(role: Role) -> Non
 def test_an_echo_is_the_request_again() -> None:
     """On a two-wire line the request comes in before its answer, and uses nothing up."""
     example = EXAMPLES[6]
-    _, echo, answers = explained((example.asks, Role.REQUEST), (example.asks + example.answers, Role.ANSWER))
-    assert (echo.role, echo.fault) == (Role.REQUEST, None)
+    _, echo, answers = explained(
+        (example.asks, FrameRole.REQUEST), (example.asks + example.answers, FrameRole.ANSWER)
+    )
+    assert (echo.role, echo.fault) == (FrameRole.REQUEST, None)
     assert data_fields(echo) == [("n", "03", "3"), ("element", "R00012", "R12 to R14")]
     assert [field[0] for field in data_fields(answers)[1:]] == ["R12", "R13", "R14"]
 
@@ -292,14 +294,14 @@ def test_damage_does_not_name_values() -> None:
     """A damaged request was not heard, and a damaged answer does not use up the request."""
     damaged = FACON.encode(1, ReadRegisters(Element("D", 0), 3)).replace(b"D", b"R")
     *_, answers = explained(
-        (FACON.encode(1, R12) + damaged, Role.REQUEST), (EXAMPLES[6].answers, Role.ANSWER)
+        (FACON.encode(1, R12) + damaged, FrameRole.REQUEST), (EXAMPLES[6].answers, FrameRole.ANSWER)
     )
     assert data_fields(answers)[1][0] == "R12"
     flipped = EXAMPLES[6].answers.replace(b"A5", b"A4")
     *_, broken, answers = explained(
-        (FACON.encode(1, R12), Role.REQUEST), (flipped + EXAMPLES[6].answers, Role.ANSWER)
+        (FACON.encode(1, R12), FrameRole.REQUEST), (flipped + EXAMPLES[6].answers, FrameRole.ANSWER)
     )
-    assert broken.role is Role.BROKEN
+    assert broken.role is FrameRole.BROKEN
     assert data_fields(answers)[1][0] == "R12"
 
 
@@ -313,13 +315,13 @@ def test_damage_does_not_name_values() -> None:
 )
 def test_refusals(code: str, meaning: str) -> None:
     for command in (b"46", b"4F", b"53", b"41", b"99"):
-        explanation = one(framed(b"01" + command + code.encode()), Role.ANSWER)
+        explanation = one(framed(b"01" + command + code.encode()), FrameRole.ANSWER)
         assert data_fields(explanation) == [("error", code, meaning)]
         assert explanation.fault is None
 
 
 def test_broadcast() -> None:
-    explanation = one(FACON.encode(0, RunStop(run=False)), Role.REQUEST)
+    explanation = one(FACON.encode(0, RunStop(run=False)), FrameRole.REQUEST)
     assert explanation.station == 0
     assert explanation.fields[1].meaning == "all (broadcast), nobody answers"
 
@@ -336,7 +338,7 @@ def test_station_255() -> None:
 @pytest.mark.parametrize("misprint", MISPRINTS, ids=lambda misprint: misprint.name)
 def test_a_wrong_checksum(misprint: Misprint) -> None:
     explanation = one(misprint.raw)
-    assert explanation.role is Role.BROKEN
+    assert explanation.role is FrameRole.BROKEN
     assert explanation.checksum_ok is False
     assert explanation.station == 1
     assert explanation.fields[-2].raw == misprint.got.encode()
@@ -347,27 +349,27 @@ def test_a_wrong_checksum(misprint: Misprint) -> None:
 def test_noise_between_frames() -> None:
     kinds = [
         (explanation.role, explanation.raw)
-        for explanation in explained((b"\x03zz" + FRAMES[0] + b"\xff" + FRAMES[1], Role.EITHER))
+        for explanation in explained((b"\x03zz" + FRAMES[0] + b"\xff" + FRAMES[1], FrameRole.EITHER))
     ]
     assert kinds == [
-        (Role.BROKEN, b"\x03zz"),
-        (Role.REQUEST, FRAMES[0]),
-        (Role.BROKEN, b"\xff"),
-        (Role.ANSWER, FRAMES[1]),
+        (FrameRole.BROKEN, b"\x03zz"),
+        (FrameRole.REQUEST, FRAMES[0]),
+        (FrameRole.BROKEN, b"\xff"),
+        (FrameRole.ANSWER, FRAMES[1]),
     ]
 
 
 @pytest.mark.parametrize("size", range(1, 8))
 def test_a_frame_cut_off(size: int) -> None:
     explanation = one(FRAMES[0][:size])
-    assert explanation.role is Role.BROKEN
+    assert explanation.role is FrameRole.BROKEN
     assert explanation.fault == "cut off: no ETX (03)"
     assert explanation.station is None
 
 
-@pytest.mark.parametrize("role", [Role.EITHER, Role.REQUEST, Role.ANSWER])
+@pytest.mark.parametrize("role", [FrameRole.EITHER, FrameRole.REQUEST, FrameRole.ANSWER])
 @pytest.mark.parametrize("data", [b"", b"0", b"00", b"123"])
-def test_an_unknown_command(role: Role, data: bytes) -> None:
+def test_an_unknown_command(role: FrameRole, data: bytes) -> None:
     explanation = one(framed(b"0199" + data), role)
     assert (explanation.command, explanation.checksum_ok) == (0x99, True)
     assert explanation.fields[2].meaning == "not in the paper"
@@ -380,28 +382,28 @@ def test_an_unknown_command(role: Role, data: bytes) -> None:
 @pytest.mark.parametrize(
     ("body", "role"),
     [
-        (b"0146", Role.EITHER),
-        (b"0146xyz", Role.EITHER),
-        (b"0146010A5F", Role.ANSWER),  # not 4 digits a register
-        (b"0146" + 261 * b"0", Role.ANSWER),  # 65 registers
-        (b"0144" + 258 * b"0", Role.ANSWER),
-        (b"01440012", Role.ANSWER),
-        (b"0148", Role.ANSWER),
-        (b"014800g", Role.ANSWER),
-        (b"01400", Role.ANSWER),
-        (b"01400290000F", Role.ANSWER),
-        (b"014F0AB", Role.ANSWER),  # a page of one byte
-        (b"014F0" + 254 * b"0", Role.ANSWER),
-        (b"01530" + 126 * b"0", Role.ANSWER),
-        (b"015000", Role.ANSWER),
-        (b"014700", Role.ANSWER),
-        (b"0147x", Role.ANSWER),
-        (b"0147g", Role.ANSWER),
-        (b"0142", Role.REQUEST),
-        (b"01400", Role.REQUEST),
+        (b"0146", FrameRole.EITHER),
+        (b"0146xyz", FrameRole.EITHER),
+        (b"0146010A5F", FrameRole.ANSWER),  # not 4 digits a register
+        (b"0146" + 261 * b"0", FrameRole.ANSWER),  # 65 registers
+        (b"0144" + 258 * b"0", FrameRole.ANSWER),
+        (b"01440012", FrameRole.ANSWER),
+        (b"0148", FrameRole.ANSWER),
+        (b"014800g", FrameRole.ANSWER),
+        (b"01400", FrameRole.ANSWER),
+        (b"01400290000F", FrameRole.ANSWER),
+        (b"014F0AB", FrameRole.ANSWER),  # a page of one byte
+        (b"014F0" + 254 * b"0", FrameRole.ANSWER),
+        (b"01530" + 126 * b"0", FrameRole.ANSWER),
+        (b"015000", FrameRole.ANSWER),
+        (b"014700", FrameRole.ANSWER),
+        (b"0147x", FrameRole.ANSWER),
+        (b"0147g", FrameRole.ANSWER),
+        (b"0142", FrameRole.REQUEST),
+        (b"01400", FrameRole.REQUEST),
     ],
 )
-def test_right_in_checksum_and_wrong_in_content(body: bytes, role: Role) -> None:
+def test_right_in_checksum_and_wrong_in_content(body: bytes, role: FrameRole) -> None:
     explanation = one(framed(body), role)
     assert explanation.checksum_ok
     assert explanation.fault
@@ -409,7 +411,9 @@ def test_right_in_checksum_and_wrong_in_content(body: bytes, role: Role) -> None
 
 
 def test_a_discrete_that_is_neither_on_nor_off() -> None:
-    *_, answers = explained((EXAMPLES[8].asks, Role.REQUEST), (framed(b"014805C347003547BA"), Role.ANSWER))
+    *_, answers = explained(
+        (EXAMPLES[8].asks, FrameRole.REQUEST), (framed(b"014805C347003547BA"), FrameRole.ANSWER)
+    )
     assert answers.fault == "expected 0 or 1 for each discrete"
 
 
@@ -433,12 +437,12 @@ pieces = st.one_of(
 
 
 @given(st.lists(st.tuples(st.lists(pieces, max_size=4).map(b"".join), roles), max_size=6))
-def test_any_conversation(conversation: list[tuple[bytes, Role]]) -> None:
+def test_any_conversation(conversation: list[tuple[bytes, FrameRole]]) -> None:
     explained(*conversation)
 
 
 @given(st.binary(max_size=2000), roles)
-def test_any_bytes(data: bytes, role: Role) -> None:
+def test_any_bytes(data: bytes, role: FrameRole) -> None:
     explained((data, role))
 
 
@@ -446,17 +450,17 @@ def test_any_bytes(data: bytes, role: Role) -> None:
 def test_any_exchange(station: int, exchange: tuple[Request[Any], Any]) -> None:
     request, answer = exchange
     asks, answers = explained(
-        (FACON.encode(station, request), Role.REQUEST),
-        (FACON.encode_answer(station, request, answer), Role.ANSWER),
+        (FACON.encode(station, request), FrameRole.REQUEST),
+        (FACON.encode_answer(station, request, answer), FrameRole.ANSWER),
     )
-    assert (asks.role, asks.fault) == (Role.REQUEST, None)
-    assert (answers.role, answers.fault) == (Role.ANSWER, None)
+    assert (asks.role, asks.fault) == (FrameRole.REQUEST, None)
+    assert (answers.role, answers.fault) == (FrameRole.ANSWER, None)
 
 
 def test_more_than_a_decoder_keeps() -> None:
     """A trace of a babbling line may hold a record of any size: none of it is forgotten."""
     data = b"".join(FRAMES) * 400
     assert len(data) > 3 * (1 << 16)
-    assert len(explained((data, Role.EITHER))) == 400 * len(FRAMES)
-    assert explained((b"x" * 200_000 + FRAMES[0], Role.EITHER))[-1].raw == FRAMES[0]
-    explained((b"\x02" * 10_000 + b"\x03" * 200_000 + b"\x0201", Role.EITHER))
+    assert len(explained((data, FrameRole.EITHER))) == 400 * len(FRAMES)
+    assert explained((b"x" * 200_000 + FRAMES[0], FrameRole.EITHER))[-1].raw == FRAMES[0]
+    explained((b"\x02" * 10_000 + b"\x03" * 200_000 + b"\x0201", FrameRole.EITHER))

@@ -12,7 +12,7 @@ import fatektool
 from fatektool.errors import UsageError
 from fatektool.protocol import frames
 from fatektool.protocol.commands import ReadBriefStatus
-from fatektool.protocol.explain import Role
+from fatektool.protocol.explain import FrameRole
 from fatektool.protocol.modbus.pdu import crc_bytes as pymodbus_crc
 from fatektool.protocol.plc_errors import MEANINGS
 from fatektool.protocol.registry import codec_named, new_explainer
@@ -96,8 +96,8 @@ def test_any_command_with_any_data(
 def test_an_error_is_explained_as_one(protocol: str) -> None:
     command = 0x03 if protocol.startswith("modbus") else 0x46
     raw = frames.error_frame(command, 2, 9, protocol)
-    (shown,) = new_explainer(protocol).explain(raw, Role.ANSWER)
-    assert (shown.role, shown.station, shown.fault) == (Role.ANSWER, 9, None)
+    (shown,) = new_explainer(protocol).explain(raw, FrameRole.ANSWER)
+    assert (shown.role, shown.station, shown.fault) == (FrameRole.ANSWER, 9, None)
     assert fatektool.error_text(2, protocol) in " ".join(field.meaning for field in shown.fields)
 
 

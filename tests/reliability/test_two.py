@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fatektool.simulator.build import Simulation
-    from fatektool.simulator.slaves.base import Request, Slave
+    from fatektool.simulator.slaves.base import RequestFrame, Slave
 
 pytestmark = pytest.mark.skipif(not PTY_SUPPORTED, reason="needs ptys and POSIX locks")
 
@@ -155,7 +155,7 @@ def one_answer_held_back(link: Path) -> Iterator[str]:
         spoil = faults.spoil
         struck = False
 
-        def once(slave: Slave, request: Request, answer: bytes) -> SpoiledAnswer:
+        def once(slave: Slave, request: RequestFrame, answer: bytes) -> SpoiledAnswer:
             nonlocal struck
             spoiled = SpoiledAnswer([answer]) if struck else spoil(slave, request, answer)
             struck = True

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fatektool.simulator.elements import KINDS, Kind
+from fatektool.simulator.elements import KINDS, SymbolKind
 from fatektool.simulator.memory import DiscreteAction
 from fatektool.simulator.models import MODELS
 from fatektool.simulator.plc import SimulatedPlc
@@ -168,7 +168,7 @@ WORDS = [kind for kind in KINDS.values() if kind.bits > 1 and kind.area not in (
 
 
 @given(st.sampled_from(WORDS), st.data())
-def test_words_read_back_as_written(kind: Kind, data: st.DataObject) -> None:
+def test_words_read_back_as_written(kind: SymbolKind, data: st.DataObject) -> None:
     plc = SimulatedPlc(pages=PAGES)
     values = data.draw(st.lists(st.integers(0, (1 << kind.bits) - 1), min_size=1, max_size=5))
     address = data.draw(st.integers(0, 10)) * (8 if kind.packed else 1)

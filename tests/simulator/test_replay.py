@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from fatektool.simulator.slaves.base import Request
+    from fatektool.simulator.slaves.base import RequestFrame
 
 STATUS, STOPPED, RUNS = frame("40"), frame("400005400"), frame("400015400")
 PAGE = frame("4F0005")
@@ -93,7 +93,7 @@ def test_what_came_before_the_first_request_answers_nothing() -> None:
 
 
 def test_an_unknown_request_is_silence_and_is_counted() -> None:
-    named: list[Request] = []
+    named: list[RequestFrame] = []
     replay = Replay([sent(0.0, PAGE), heard(0.1, ONE)], on_unknown=named.append)
     assert answers(replay, STATUS, frame("4F0005", station=2), STATUS, PAGE, FRESH) == [
         b"",

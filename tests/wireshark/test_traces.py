@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from fatektool.cli import run
 from fatektool.program.archive import load_backup
-from fatektool.protocol.explain import Role
+from fatektool.protocol.explain import FrameRole
 from fatektool.protocol.registry import new_explainer
 from tests.cli.running import served
 from tests.wireshark.capture import FACON, INFO, MSERIES, RECEIVED, SCRIPT, SENT, capture, traced
@@ -62,7 +62,7 @@ def test_a_line_with_faults(tshark: Tshark, tmp_path: Path, monkeypatch: pytest.
     assert any("[bad checksum]" in packet[INFO] for packet in packets)
 
 
-def seen_by_decode(data: bytes, role: Role) -> dict[str, Any]:
+def seen_by_decode(data: bytes, role: FrameRole) -> dict[str, Any]:
     """A record as ``decode`` explains it: noise, and of each frame station, command and checksum."""
     frames = list(new_explainer("facon").explain(data, role))
     return {
@@ -104,7 +104,7 @@ def test_it_cuts_any_bytes_as_decode_does(tshark: Tshark) -> None:
     packets = tshark(capture(traced(FACON, direction, data) for direction, data in records))
     assert len(packets) == len(records)
     for (direction, data), packet in zip(records, packets, strict=True):
-        wanted = seen_by_decode(data, Role.REQUEST if direction == SENT else Role.ANSWER)
+        wanted = seen_by_decode(data, FrameRole.REQUEST if direction == SENT else FrameRole.ANSWER)
         assert {name: values([packet], name) for name in wanted} == wanted, data
 
 
@@ -125,5 +125,5 @@ def test_it_finds_the_good_mseries_frames_that_decode_finds(tshark: Tshark) -> N
     for (_, data), packet in zip(records, packets, strict=True):
         found = zip(values([packet], "command"), values([packet], "checksum.status"), strict=True)
         good = [command for command, checksum in found if checksum == "1"]
-        explained = new_explainer("mseries").explain(data, Role.EITHER)
+        explained = new_explainer("mseries").explain(data, FrameRole.EITHER)
         assert good == [f"0x{frame.command:02x}" for frame in explained if frame.checksum_ok], data

@@ -15,7 +15,7 @@ from fatektool.cli.shared.options import OneOf, voice_options
 from fatektool.cli.shared.pairs import together
 from fatektool.errors import DataError, UsageError
 from fatektool.files.atomic import read_bounded
-from fatektool.protocol.explain import Explainer, Explanation, Role
+from fatektool.protocol.explain import Explainer, Explanation, FrameRole
 from fatektool.protocol.registry import new_explainer
 from fatektool.protocols import DEFAULT, PROTOCOLS
 from fatektool.transport.trace import RECEIVED
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from fatektool.cli.shared.output import Voice
 
 _MAX_TRACE = 256 << 20
-_ROLES = {"request": Role.REQUEST, "answer": Role.ANSWER}
+_ROLES = {"request": FrameRole.REQUEST, "answer": FrameRole.ANSWER}
 
 
 @click.command(
@@ -57,7 +57,7 @@ def decode_command(
     together("role", holds=all(not record.time for record in records), needs="frames given as hex")
     protocol = protocol or _protocol_of(records)
     explainer = new_explainer(protocol)
-    found = list(_explained(explainer, records, _ROLES.get(role or "", Role.EITHER)))
+    found = list(_explained(explainer, records, _ROLES.get(role or "", FrameRole.EITHER)))
     if damage is not None:
         if found and not voice.json:  # what stands before the damage is worth a look
             voice.show({}, _lines(found, binary=explainer.binary))
@@ -92,7 +92,7 @@ def _gathered(frames: tuple[str, ...]) -> tuple[list[TraceRecord], DataError | N
 
 
 def _explained(
-    explainer: Explainer, records: Iterable[TraceRecord], role: Role
+    explainer: Explainer, records: Iterable[TraceRecord], role: FrameRole
 ) -> Iterator[tuple[TraceRecord | None, Explanation]]:
     for record in records:
         typed = record.time == ""
@@ -114,8 +114,8 @@ def _records(frames: tuple[str, ...]) -> Iterator[TraceRecord]:
     raise UsageError(f"{text[:60]!r} is neither hex digits in pairs nor an existing trace file")
 
 
-def _direction(record: TraceRecord) -> Role:
-    return Role.ANSWER if record.direction == RECEIVED else Role.REQUEST
+def _direction(record: TraceRecord) -> FrameRole:
+    return FrameRole.ANSWER if record.direction == RECEIVED else FrameRole.REQUEST
 
 
 def _lines(found: Iterable[tuple[TraceRecord | None, Explanation]], *, binary: bool) -> Iterator[str]:

@@ -12,7 +12,7 @@ from fatektool.cli.shared.options import OneOf, voice_options
 from fatektool.errors import UsageError
 from fatektool.jobs.command_operands import parse_hex
 from fatektool.jobs.command_words import MODBUS_FUNCTIONS, parse_code, parse_command
-from fatektool.protocol.explain import Role
+from fatektool.protocol.explain import FrameRole
 from fatektool.protocol.frames import answer_frame, error_frame, frame, raw_frame
 from fatektool.protocol.registry import codec_named, new_explainer
 from fatektool.protocols import DEFAULT, PROTOCOLS
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from fatektool.cli.shared.output import Voice
     from fatektool.protocol.explain import Explainer, Explanation
 
-_ROLES = {"request": Role.REQUEST, "answer": Role.ANSWER}
+_ROLES = {"request": FrameRole.REQUEST, "answer": FrameRole.ANSWER}
 _TCP = "modbus-tcp"
 
 
@@ -86,7 +86,7 @@ def encode_command(
     else:
         raw = _encoded(command, operands, answer=answer, **place)
     explainer = new_explainer(protocol)
-    shown = _explained(explainer, raw, Role.ANSWER if answer else Role.REQUEST)
+    shown = _explained(explainer, raw, FrameRole.ANSWER if answer else FrameRole.REQUEST)
     voice.show(encode_document(protocol, raw, shown), [raw.hex(" ").upper()])
     if voice.json:
         return
@@ -134,6 +134,6 @@ def _code(text: str) -> int:
         raise UsageError(f"--error: expected a code in hex, such as A, got {text!r:.20}") from None
 
 
-def _explained(explainer: Explainer, raw: bytes, role: Role) -> Explanation:
+def _explained(explainer: Explainer, raw: bytes, role: FrameRole) -> Explanation:
     """The fields of a frame; the first explanation is of all of it, as it is whole."""
     return next(iter(explainer.explain(raw, role)))

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import click
 
     from fatektool.cli.shared.output import Voice
-    from fatektool.simulator.slaves.base import Request
+    from fatektool.simulator.slaves.base import RequestFrame
 
 _MAX_TRACE = 256 << 20
 _MOST_NAMED: Final = 3
@@ -79,7 +79,7 @@ def tell_unknown(replay: Replay, voice: Voice) -> None:
     )
 
 
-def _named(request: Request) -> str:
+def _named(request: RequestFrame) -> str:
     data = _text(request.data)
     return f"station {request.station} {_text(request.command)}{f' {data}' if data else ''}"
 

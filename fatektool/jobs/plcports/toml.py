@@ -31,7 +31,7 @@ from fatektool.plcports.operands import (
     HIGH_SPEED_TYPES,
     MBUS_MASTER_TYPES,
     MBUS_SLAVE_TYPES,
-    Operand,
+    TableOperand,
 )
 from fatektool.plcports.rows import ROW_WORDS, SharedBlock, Transaction
 from fatektool.plcports.tables import MBUS_MARK, ClinkTable, HighSpeedTable, MbusTable, Table
@@ -141,12 +141,12 @@ class _Part:
             raise DataError(f"{self.where}: command: expected {expected}, got {_short(value)}")
         return value
 
-    def operand(self, key: str, types: Mapping[int, DataType]) -> Operand:
+    def operand(self, key: str, types: Mapping[int, DataType]) -> TableOperand:
         """A type and a reference."""
         example = '"400001"' if types is MBUS_SLAVE_TYPES else '"R100"'
         text = self.text(key, f"a text such as {example}")
         try:
-            return Operand.parse(text, types)
+            return TableOperand.parse(text, types)
         except UsageError as error:
             raise DataError(f"{self.where}: {key}: {error.message}") from error
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from fatektool.protocol.codec import Decoder, Frame
     from fatektool.protocol.commands import Request
     from fatektool.protocol.elements import Element
-    from fatektool.protocol.fatek.fields import Row
+    from fatektool.protocol.fatek.fields import CommandRow
     from fatektool.protocol.fatek.notation import Notation
 
 A = TypeVar("A")
@@ -50,7 +50,7 @@ class DataFields:
     def __init__(
         self,
         notation: Notation,
-        rows: Mapping[int, Row],
+        rows: Mapping[int, CommandRow],
         refusal: Callable[[int, int, str], PlcRefused],
         paper: str,
         *,

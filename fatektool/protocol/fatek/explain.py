@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from fatektool.errors import FrameError
 from fatektool.protocol.commands import Command
-from fatektool.protocol.explain import Explanation, Field, Role
+from fatektool.protocol.explain import Explanation, Field, FrameRole
 from fatektool.protocol.fatek.explain_data import answer_fields, request_fields
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class FatekExplainer(ABC):
         self.codec = codec
         self._last: dict[tuple[int, int], Request[Any]] = {}
 
-    def explain(self, data: bytes, role: Role = Role.EITHER) -> Iterator[Explanation]:
+    def explain(self, data: bytes, role: FrameRole = FrameRole.EITHER) -> Iterator[Explanation]:
         """Explain all frames in a piece of the conversation, and the bytes that are none.
 
         Args:
@@ -66,7 +66,7 @@ class FatekExplainer(ABC):
             yield _no_frame(FrameError(self.cut_off, raw=data[-left:]))
 
     @abstractmethod
-    def role_of(self, raw: bytes, role: Role) -> Role:
+    def role_of(self, raw: bytes, role: FrameRole) -> FrameRole:
         """What a frame says that it is; else what is known."""
 
     @abstractmethod
@@ -79,7 +79,7 @@ class FatekExplainer(ABC):
     ) -> tuple[Field, ...]:
         """All fields of a frame, in order."""
 
-    def _frames(self, decoder: Decoder, role: Role) -> Iterator[Explanation]:
+    def _frames(self, decoder: Decoder, role: FrameRole) -> Iterator[Explanation]:
         while True:
             try:
                 frame = decoder.next_frame()
@@ -90,12 +90,12 @@ class FatekExplainer(ABC):
                 return
             yield self._frame(frame.raw, role, None)
 
-    def _frame(self, raw: bytes, role: Role, damage: FrameError | None) -> Explanation:
+    def _frame(self, raw: bytes, role: FrameRole, damage: FrameError | None) -> Explanation:
         """Explain a frame that is whole in form; a damaged one says nothing about the conversation."""
         station, command, data = self.place(raw)
         role, fields, fault, request = self._data(station, command, data, self.role_of(raw, role))
         if damage is not None:
-            role, fault = Role.BROKEN, damage.message
+            role, fault = FrameRole.BROKEN, damage.message
         elif request is not None:
             self._last[station, command] = request
         elif fault is None:
@@ -118,8 +118,8 @@ class FatekExplainer(ABC):
         )
 
     def _data(
-        self, station: int, command: int, data: bytes, role: Role
-    ) -> tuple[Role, tuple[Field, ...], str | None, Request[Any] | None]:
+        self, station: int, command: int, data: bytes, role: FrameRole
+    ) -> tuple[FrameRole, tuple[Field, ...], str | None, Request[Any] | None]:
         """Read the data field as a request, as an answer, or as what it can be.
 
         Returns:
@@ -128,13 +128,13 @@ class FatekExplainer(ABC):
         asked = self._last.get((station, command))
         fault = None
         request = None
-        if role is not Role.ANSWER:
+        if role is not FrameRole.ANSWER:
             try:
                 request = self.codec.data.parse_request(command, data)
             except FrameError as error:
                 fault = error.message
         answer = None
-        if role is not Role.REQUEST:
+        if role is not FrameRole.REQUEST:
             try:
                 answer = answer_fields(self.codec, command, data, asked)
             except FrameError as error:
@@ -142,11 +142,11 @@ class FatekExplainer(ABC):
                 if asked is not None and self._is_echo(asked, data):
                     request = asked
         if request is not None and (asked is None or answer is None):
-            either = role is Role.EITHER and answer is not None
+            either = role is FrameRole.EITHER and answer is not None
             fields = request_fields(self.codec, request, data)
-            return Role.EITHER if either else Role.REQUEST, fields, None, request
+            return FrameRole.EITHER if either else FrameRole.REQUEST, fields, None, request
         if answer is not None:
-            return Role.ANSWER, answer, None, None
+            return FrameRole.ANSWER, answer, None, None
         return role, (Field("data", data, _SAYS_LITTLE),) if data else (), fault, None
 
     def _is_echo(self, asked: Request[Any], data: bytes) -> bool:
@@ -156,5 +156,5 @@ class FatekExplainer(ABC):
 
 def _no_frame(error: FrameError) -> Explanation:
     return Explanation(
-        Role.BROKEN, error.raw, (Field("bytes", error.raw, error.message),), fault=error.message
+        FrameRole.BROKEN, error.raw, (Field("bytes", error.raw, error.message),), fault=error.message
     )

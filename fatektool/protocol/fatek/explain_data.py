@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from fatektool.protocol.commands import Request
     from fatektool.protocol.elements import Element
     from fatektool.protocol.fatek.codec import FatekCodec
-    from fatektool.protocol.fatek.fields import Row
+    from fatektool.protocol.fatek.fields import CommandRow
     from fatektool.protocol.fatek.notation import Notation
     from fatektool.protocol.status import StatusFlags
 
@@ -186,7 +186,7 @@ def answer_fields(
     return tuple(cutter.fields)
 
 
-def _values(cutter: Cutter, command: int, row: Row, asked: Request[Any] | None) -> None:
+def _values(cutter: Cutter, command: int, row: CommandRow, asked: Request[Any] | None) -> None:
     """What follows the error in a good answer."""
     rest = cutter.rest
     if command in _ACKNOWLEDGED:

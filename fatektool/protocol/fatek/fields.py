@@ -30,11 +30,11 @@ from fatektool.protocol.commands import (
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fatektool.protocol.elements import Element, Kind
+    from fatektool.protocol.elements import Element, ElementKind
     from fatektool.protocol.fatek.notation import Notation
 
 
-class Row(NamedTuple):
+class CommandRow(NamedTuple):
     """How one command is written. Sizes are those of the wire.
 
     Attributes:
@@ -52,7 +52,7 @@ class Row(NamedTuple):
     answer: Callable[[Notation, Any, Any], bytes]
 
 
-def run_limit(kind: Kind) -> int:
+def run_limit(kind: ElementKind) -> int:
     """How many elements a run (43 to 47) holds: 32 of 32 bits, by FACON's rule."""
     return MAX_DISCRETES if kind.bits == 1 else MAX_READ_WORDS // kind.words
 
@@ -72,9 +72,11 @@ def require_run_limit(first: Element, count: int, command: Command) -> None:
 
 def acknowledged(
     request: Callable[[Notation, Any], bytes], parse_request: Callable[[Notation, bytes], Request[Any]]
-) -> Row:
+) -> CommandRow:
     """A command whose answer is the error alone."""
-    return Row(request, parse_request, lambda _w, _r: 0, lambda _w, _r, _d: None, lambda _w, _r, _a: b"")
+    return CommandRow(
+        request, parse_request, lambda _w, _r: 0, lambda _w, _r, _d: None, lambda _w, _r, _a: b""
+    )
 
 
 def parse_empty(make: Callable[[], Request[Any]]) -> Callable[[Notation, bytes], Request[Any]]:
@@ -121,8 +123,8 @@ def _parse_read_run(
     return parse
 
 
-def _read_bits(make: Callable[[Element, int], ReadDisabled | ReadDiscretes]) -> Row:
-    return Row(
+def _read_bits(make: Callable[[Element, int], ReadDisabled | ReadDiscretes]) -> CommandRow:
+    return CommandRow(
         _read_run,
         _parse_read_run(make, zero_is_256=True),
         lambda _, r: int(r.count),
@@ -188,7 +190,7 @@ def _parse_write_mixed(w: Notation, data: bytes) -> WriteMixed:
     return WriteMixed(tuple(items))
 
 
-ROWS: Final[dict[int, Row]] = {
+ROWS: Final[dict[int, CommandRow]] = {
     Command.RUN_STOP: acknowledged(lambda w, r: w.digit(r.run), _parse_run_stop),
     Command.CONTROL_DISCRETE: acknowledged(
         lambda w, r: w.digit(r.control) + w.element(r.element), _parse_control
@@ -196,7 +198,7 @@ ROWS: Final[dict[int, Row]] = {
     Command.READ_DISABLED: _read_bits(ReadDisabled),
     Command.READ_DISCRETES: _read_bits(ReadDiscretes),
     Command.WRITE_DISCRETES: acknowledged(_write_discretes, _parse_write_discretes),
-    Command.READ_REGISTERS: Row(
+    Command.READ_REGISTERS: CommandRow(
         _read_run,
         _parse_read_run(ReadRegisters, zero_is_256=False),
         lambda w, r: r.count * w.value_sizes[r.first.kind.bits],
@@ -204,7 +206,7 @@ ROWS: Final[dict[int, Row]] = {
         lambda w, r, values: w.words(values, r.first.kind.bits),
     ),
     Command.WRITE_REGISTERS: acknowledged(_write_registers, _parse_write_registers),
-    Command.READ_MIXED: Row(
+    Command.READ_MIXED: CommandRow(
         lambda w, r: w.count(len(r.elements)) + b"".join(map(w.element, r.elements)),
         _parse_read_mixed,
         lambda w, r: w.values_size(r.elements),
@@ -215,7 +217,7 @@ ROWS: Final[dict[int, Row]] = {
         lambda w, r: w.count(len(r.items)) + b"".join(w.element(e) + w.value(e, v) for e, v in r.items),
         _parse_write_mixed,
     ),
-    Command.LOOPBACK: Row(
+    Command.LOOPBACK: CommandRow(
         lambda _, r: bytes(r.data),
         lambda _, data: Loopback(data),
         lambda _, r: len(r.data) - 1,  # no error before it

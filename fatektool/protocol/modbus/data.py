@@ -23,7 +23,7 @@ from fatektool.protocol.commands import (
     WriteRegisters,
 )
 from fatektool.protocol.modbus import pdu as modbus_pdu
-from fatektool.protocol.modbus.map import Area
+from fatektool.protocol.modbus.map import ModbusArea
 from fatektool.protocol.modbus.pdu import Pdu
 from fatektool.protocol.modbus.sizes import answer_size, count_of, first_of, most, of_bits, units_of
 from fatektool.protocol.plc_errors import asked
@@ -59,16 +59,16 @@ _NEXT: Final = {
     0x02: "'fatektool modbus map' shows the standard map; a PLC with R3968 = A55AH needs --modbus-map",
 }
 _READS: Final = {
-    Area.COIL: 0x01,
-    Area.DISCRETE_INPUT: 0x02,
-    Area.HOLDING_REGISTER: 0x03,
-    Area.INPUT_REGISTER: 0x04,
+    ModbusArea.COIL: 0x01,
+    ModbusArea.DISCRETE_INPUT: 0x02,
+    ModbusArea.HOLDING_REGISTER: 0x03,
+    ModbusArea.INPUT_REGISTER: 0x04,
 }
 AREAS: Final = {function: area for area, function in _READS.items()} | {
-    modbus_pdu.WRITE_COIL: Area.COIL,
-    modbus_pdu.WRITE_COILS: Area.COIL,
-    modbus_pdu.WRITE_REGISTER: Area.HOLDING_REGISTER,
-    modbus_pdu.WRITE_REGISTERS: Area.HOLDING_REGISTER,
+    modbus_pdu.WRITE_COIL: ModbusArea.COIL,
+    modbus_pdu.WRITE_COILS: ModbusArea.COIL,
+    modbus_pdu.WRITE_REGISTER: ModbusArea.HOLDING_REGISTER,
+    modbus_pdu.WRITE_REGISTERS: ModbusArea.HOLDING_REGISTER,
 }
 
 

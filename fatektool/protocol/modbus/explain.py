@@ -11,7 +11,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from fatektool.errors import FrameError
-from fatektool.protocol.explain import Explanation, Field, Role
+from fatektool.protocol.explain import Explanation, Field, FrameRole
 from fatektool.protocol.modbus import pdu as modbus_pdu
 from fatektool.protocol.modbus.data import AREAS, exception_text
 from fatektool.protocol.modbus.framing import LAST_STATION
@@ -55,7 +55,7 @@ class ModbusExplainer:
         """False for the characters of ASCII."""
         return self._framing.octet == 1
 
-    def explain(self, data: bytes, role: Role = Role.EITHER) -> Iterator[Explanation]:
+    def explain(self, data: bytes, role: FrameRole = FrameRole.EITHER) -> Iterator[Explanation]:
         """Explain all frames in a piece of the conversation, and the bytes that are none.
 
         Args:
@@ -69,19 +69,19 @@ class ModbusExplainer:
         if decoder.expect_no_more():
             yield from self._frames(decoder, role)
 
-    def _frames(self, decoder: Decoder, role: Role) -> Iterator[Explanation]:
+    def _frames(self, decoder: Decoder, role: FrameRole) -> Iterator[Explanation]:
         while True:
             try:
                 frame = decoder.next_frame()
             except FrameError as error:
                 whole = (Field("bytes", error.raw, error.message),)
-                yield Explanation(Role.BROKEN, error.raw, whole, fault=error.message)
+                yield Explanation(FrameRole.BROKEN, error.raw, whole, fault=error.message)
                 continue
             if frame is None:
                 return
             yield self._frame(frame, role)
 
-    def _frame(self, frame: Frame, role: Role) -> Explanation:
+    def _frame(self, frame: Frame, role: FrameRole) -> Explanation:
         key = (frame.station, frame.command, frame.number)
         role, said, fault = _understood(frame.data, role, asked=key in self._last)
         if said is None:
@@ -89,7 +89,7 @@ class ModbusExplainer:
         elif said.exception:
             self._last.pop(key, None)
             parts = [_Part("exception", 1, f"REFUSED: {exception_text(said.exception)}")]
-        elif role is Role.ANSWER:
+        elif role is FrameRole.ANSWER:
             parts = _answer_parts(said, self._last.pop(key, None))
         else:
             self._last[key] = said
@@ -141,19 +141,22 @@ def _around(parts: Iterable[FramePart], raw: bytes) -> Iterator[Field]:
         at += part.size
 
 
-def _understood(pdu: bytes, role: Role, *, asked: bool) -> tuple[Role, Pdu | None, str | None]:
+def _understood(pdu: bytes, role: FrameRole, *, asked: bool) -> tuple[FrameRole, Pdu | None, str | None]:
     """What a PDU is and says, or what is wrong with it."""
-    found: dict[Role, Pdu] = {}
+    found: dict[FrameRole, Pdu] = {}
     fault = None
-    for kind, parse in ((Role.REQUEST, modbus_pdu.parse_request), (Role.ANSWER, modbus_pdu.parse_answer)):
-        if role in {kind, Role.EITHER}:
+    for kind, parse in (
+        (FrameRole.REQUEST, modbus_pdu.parse_request),
+        (FrameRole.ANSWER, modbus_pdu.parse_answer),
+    ):
+        if role in {kind, FrameRole.EITHER}:
             try:
                 found[kind] = parse(pdu)
             except FrameError as error:
                 fault = error.message
     if not found:
         return role, None, fault
-    first = Role.ANSWER if asked and Role.ANSWER in found else next(iter(found))
+    first = FrameRole.ANSWER if asked and FrameRole.ANSWER in found else next(iter(found))
     return first, found[first], None
 
 

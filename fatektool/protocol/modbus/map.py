@@ -41,7 +41,7 @@ _WRITTEN: Final = re.compile(r"([0134])(\d{4,5})", re.ASCII)
 _RANGE: Final = re.compile(r"([A-Za-z]+)(\d{1,5})(?:-(?:\1)?(\d{1,5}))?=(\d{5,6})", re.ASCII)
 
 
-class Area(IntEnum):
+class ModbusArea(IntEnum):
     """The four kinds of Modbus reference, by their first digit."""
 
     COIL = 0
@@ -57,12 +57,12 @@ class Area(IntEnum):
     @property
     def of_bits(self) -> bool:
         """True for coils and discrete inputs."""
-        return self in {Area.COIL, Area.DISCRETE_INPUT}
+        return self in {ModbusArea.COIL, ModbusArea.DISCRETE_INPUT}
 
     @property
     def read_only(self) -> bool:
         """True for inputs."""
-        return self in {Area.DISCRETE_INPUT, Area.INPUT_REGISTER}
+        return self in {ModbusArea.DISCRETE_INPUT, ModbusArea.INPUT_REGISTER}
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +74,7 @@ class Reference:
         offset: as it stands on the wire, 0 to 65535.
     """
 
-    area: Area
+    area: ModbusArea
     offset: int
 
     @classmethod
@@ -90,7 +90,7 @@ class Reference:
                 f"{text!r} is no Modbus reference: expected 0, 1, 3 or 4 and then 0001 to 9999 or "
                 f"00001 to 65536, such as 40001 or 400001"
             )
-        return cls(Area(int(match[1])), int(match[2]) - 1)
+        return cls(ModbusArea(int(match[1])), int(match[2]) - 1)
 
     @property
     def five_digits(self) -> str | None:
@@ -102,7 +102,7 @@ class Reference:
 
 
 @dataclass(frozen=True, slots=True)
-class Stretch:
+class MapStretch:
     """Neighbours among the elements that are neighbours among the references too.
 
     Attributes:
@@ -114,7 +114,7 @@ class Stretch:
         width: references that each takes.
     """
 
-    area: Area
+    area: ModbusArea
     offset: int
     symbol: str
     first: int
@@ -126,15 +126,15 @@ class Stretch:
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class ReferenceRun:
     """Where an element, or a run of them, lies: so many references from one on."""
 
-    area: Area
+    area: ModbusArea
     offset: int
     count: int
 
 
-class Found(NamedTuple):
+class MappedElement(NamedTuple):
     """What a reference holds: an element, or a half of one of 32 bits."""
 
     element: Element
@@ -142,26 +142,26 @@ class Found(NamedTuple):
 
 
 _STANDARD_BITS: Final = (
-    Stretch(Area.COIL, 0, "Y", 0, 256),
-    Stretch(Area.COIL, 1000, "X", 0, 256),
-    Stretch(Area.COIL, 2000, "M", 0, 2002),
-    Stretch(Area.COIL, 6000, "S", 0, 1000),
-    Stretch(Area.COIL, 9000, "T", 0, 256),
-    Stretch(Area.COIL, 9500, "C", 0, 256),
+    MapStretch(ModbusArea.COIL, 0, "Y", 0, 256),
+    MapStretch(ModbusArea.COIL, 1000, "X", 0, 256),
+    MapStretch(ModbusArea.COIL, 2000, "M", 0, 2002),
+    MapStretch(ModbusArea.COIL, 6000, "S", 0, 1000),
+    MapStretch(ModbusArea.COIL, 9000, "T", 0, 256),
+    MapStretch(ModbusArea.COIL, 9500, "C", 0, 256),
 )
 _STANDARD_REGISTERS: Final = (
-    Stretch(Area.HOLDING_REGISTER, 0, "R", 0, 4168),
-    Stretch(Area.HOLDING_REGISTER, 5000, "R", 5000, 999),
-    Stretch(Area.HOLDING_REGISTER, 6000, "D", 0, 2999),
-    Stretch(Area.HOLDING_REGISTER, 9000, "RT", 0, 256),
-    Stretch(Area.HOLDING_REGISTER, 9500, "RC", 0, 200),
-    Stretch(Area.HOLDING_REGISTER, 9700, "DRC", 200, 56, 2),
+    MapStretch(ModbusArea.HOLDING_REGISTER, 0, "R", 0, 4168),
+    MapStretch(ModbusArea.HOLDING_REGISTER, 5000, "R", 5000, 999),
+    MapStretch(ModbusArea.HOLDING_REGISTER, 6000, "D", 0, 2999),
+    MapStretch(ModbusArea.HOLDING_REGISTER, 9000, "RT", 0, 256),
+    MapStretch(ModbusArea.HOLDING_REGISTER, 9500, "RC", 0, 200),
+    MapStretch(ModbusArea.HOLDING_REGISTER, 9700, "DRC", 200, 56, 2),
 )
 _OWN: Final = (  # R3969, R3972, …: area, symbol, last first address, most
-    (Area.COIL, "M", 2001, 2001),
-    (Area.DISCRETE_INPUT, "M", 2001, 2001),
-    (Area.INPUT_REGISTER, "R", 3839, 3840),
-    (Area.HOLDING_REGISTER, "R", 3839, 3840),
+    (ModbusArea.COIL, "M", 2001, 2001),
+    (ModbusArea.DISCRETE_INPUT, "M", 2001, 2001),
+    (ModbusArea.INPUT_REGISTER, "R", 3839, 3840),
+    (ModbusArea.HOLDING_REGISTER, "R", 3839, 3840),
 )
 
 
@@ -175,9 +175,9 @@ class ModbusMap:
     """
 
     name: str
-    stretches: tuple[Stretch, ...]
+    stretches: tuple[MapStretch, ...]
 
-    def place(self, first: Element, count: int = 1, *, writes: bool = False) -> Place:
+    def place(self, first: Element, count: int = 1, *, writes: bool = False) -> ReferenceRun:
         """Where a run of elements lies.
 
         Args:
@@ -191,7 +191,7 @@ class ModbusMap:
         stretch, begin = self._one(first, writes=writes)
         last = first.after(count - 1)
         other, end = self._one(last, writes=writes)
-        place = Place(begin.area, begin.offset, end.offset + end.count - begin.offset)
+        place = ReferenceRun(begin.area, begin.offset, end.offset + end.count - begin.offset)
         if stretch != other or (writes and place.count != count * begin.count):
             raise UsageError(f"{first} and {last} have no Modbus references side by side")
         return place
@@ -204,13 +204,13 @@ class ModbusMap:
         """
         return self._one(element, writes=writes)[0]
 
-    def element_at(self, reference: Reference) -> Found | None:
+    def element_at(self, reference: Reference) -> MappedElement | None:
         """What a reference holds; None for nothing."""
         for stretch in self.stretches:
             place, half = divmod(reference.offset - stretch.offset, stretch.width)
             if reference.area is stretch.area and 0 <= place < stretch.count:
                 element = Element(stretch.symbol, stretch.first + place)
-                return Found(element, ("low word", "high word")[half] if stretch.width > 1 else None)
+                return MappedElement(element, ("low word", "high word")[half] if stretch.width > 1 else None)
         return None
 
     @property
@@ -218,7 +218,7 @@ class ModbusMap:
         """The elements that it has, for messages."""
         return " ".join(dict.fromkeys(map(str, self.stretches))) or "none"
 
-    def _one(self, element: Element, *, writes: bool) -> tuple[int, Place]:
+    def _one(self, element: Element, *, writes: bool) -> tuple[int, ReferenceRun]:
         symbol, bits = element.symbol, element.kind.bits
         size = 1
         if "W" in symbol:
@@ -231,7 +231,7 @@ class ModbusMap:
             if stretch.symbol == symbol and 0 <= at <= stretch.count - size:
                 if not (writes and stretch.area.read_only):
                     where = stretch.offset + at * stretch.width
-                    return number, Place(stretch.area, where, size * stretch.width)
+                    return number, ReferenceRun(stretch.area, where, size * stretch.width)
                 readable = True
         raise self._refused(element, readable=readable)
 
@@ -275,7 +275,7 @@ def map_of_registers(words: Sequence[int]) -> ModbusMap:
     for number, (area, symbol, last, most) in enumerate(_OWN):
         offset, first, count = words[1 + 3 * number : 4 + 3 * number]
         if first <= last and 1 <= count <= most:
-            own.append(Stretch(area, offset, symbol, first, min(count, LAST_OFFSET + 1 - offset)))
+            own.append(MapStretch(area, offset, symbol, first, min(count, LAST_OFFSET + 1 - offset)))
     return _composed(own, custom=words[0] == CUSTOM)
 
 
@@ -288,7 +288,7 @@ def parse_map(text: str) -> ModbusMap:
     Raises:
         UsageError: it is none.
     """
-    own: list[Stretch] = []
+    own: list[MapStretch] = []
     for part in text.split(","):
         match = _RANGE.fullmatch(part.strip())
         if match is None:
@@ -309,11 +309,11 @@ def parse_map(text: str) -> ModbusMap:
             raise UsageError(f"Modbus map {part.strip()!r}: it goes on behind {reference.area:d}65536")
         if any(stretch.area is reference.area for stretch in own):
             raise UsageError(f"Modbus map {text!r:.80}: {reference.area.words}s are given twice")
-        own.append(Stretch(reference.area, reference.offset, symbol, first, count))
+        own.append(MapStretch(reference.area, reference.offset, symbol, first, count))
     return _composed(own, custom=any(not stretch.area.read_only for stretch in own))
 
 
-def _composed(own: list[Stretch], *, custom: bool) -> ModbusMap:
+def _composed(own: list[MapStretch], *, custom: bool) -> ModbusMap:
     inputs = tuple(stretch for stretch in own if stretch.area.read_only)
     if not custom:
         return ModbusMap(STANDARD_NAME, STANDARD.stretches + inputs)

@@ -27,7 +27,7 @@ class RequestKind(Enum):
     PAGE_WRITE = "page-write"
 
 
-class Request(NamedTuple):
+class RequestFrame(NamedTuple):
     """One request cut out of the stream, its checksum already right.
 
     Attributes:
@@ -86,10 +86,10 @@ class Slave(Protocol):
     def delimiters(self) -> tuple[bytes, ...]:
         """What begins and ends an answer, the end last: what noise must hold to be taken for one."""
 
-    def cut(self, data: bytes) -> list[Request]:
+    def cut(self, data: bytes) -> list[RequestFrame]:
         """Take bytes, whatever the chunking; give the requests that they complete."""
 
-    def answer(self, request: Request) -> bytes | None:
+    def answer(self, request: RequestFrame) -> bytes | None:
         """Execute a request; None where a PLC is silent."""
 
     def readdressed(self, answer: bytes, station: int) -> bytes:

@@ -19,7 +19,7 @@ from tests.plant import cut_after, error_of, spied
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from fatektool.simulator.memory import Memory
+    from fatektool.simulator.memory import SimulatedMemory
     from tests.plant import Plant
 
 pytestmark = pytest.mark.usefixtures("no_waiting")
@@ -119,7 +119,7 @@ def test_ctrl_c_without_a_terminal(plant: Plant) -> None:
         assert (found[-1]["schema"] == "fatektool.error/1") == bool(words)
 
 
-def change_round_by_round(memory: Memory) -> None:
+def change_round_by_round(memory: SimulatedMemory) -> None:
     """A PLC whose R0 counts the times that it is read."""
     read = memory.read_words
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from fatektool.jobs.plcports.host import LinkHost, read_host
-from fatektool.plcports.operands import Operand
+from fatektool.plcports.operands import TableOperand
 from fatektool.plcports.rows import Transaction
 from fatektool.plcports.tables import MbusTable
 from fatektool.plcports.versions import INPUT_TYPES, MODBUS_ASCII, is_fbs, needs_of_ports, needs_of_table
@@ -47,7 +47,7 @@ def test_what_needs_them() -> None:
     for r4047 in (None, 0, 0x5502, 0x0056):
         assert needs_of_ports(r4047) == ()
     for slave, needs in ((0, ()), (4, ()), (1, (INPUT_TYPES,)), (3, (INPUT_TYPES,))):
-        row = Transaction(1, 1, 1, Operand(12 if slave > 1 else 2, 0), Operand(slave, 1))
+        row = Transaction(1, 1, 1, TableOperand(12 if slave > 1 else 2, 0), TableOperand(slave, 1))
         assert needs_of_table(MbusTable((row,))) == needs
 
 

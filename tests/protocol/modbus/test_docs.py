@@ -9,7 +9,7 @@ import pytest
 
 from fatektool.protocol.commands import ReadRegisters
 from fatektool.protocol.elements import Element
-from fatektool.protocol.explain import Role
+from fatektool.protocol.explain import FrameRole
 from fatektool.protocol.modbus import pdu as modbus_pdu
 from fatektool.protocol.modbus.ascii import ASCII
 from fatektool.protocol.modbus.data import MEANINGS
@@ -31,7 +31,7 @@ BLOCKS = blocks(DOC, "modbus-rtu")
 def test_examples(frames: Sequence[Shown]) -> None:
     explainer = new_explainer("modbus-rtu")
     for shown in frames:
-        role = Role.REQUEST if shown.kind == "request" else Role.ANSWER
+        role = FrameRole.REQUEST if shown.kind == "request" else FrameRole.ANSWER
         (explanation,) = explainer.explain(shown.raw, role)
         assert (explanation.role, explanation.fault) == (role, None)
         said = [f"{field.name}: {field.meaning}" for field in explanation.fields[2:-1]]

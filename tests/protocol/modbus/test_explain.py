@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from fatektool.protocol.explain import Role
+from fatektool.protocol.explain import FrameRole
 from fatektool.protocol.registry import new_explainer
 
 READ = {
@@ -29,7 +29,7 @@ READ = {
 @pytest.mark.parametrize("protocol", READ)
 def test_a_request(protocol: str) -> None:
     raw, before, behind = READ[protocol]
-    (shown,) = new_explainer(protocol).explain(raw, Role.REQUEST)
+    (shown,) = new_explainer(protocol).explain(raw, FrameRole.REQUEST)
     assert b"".join(field.raw for field in shown.fields) == raw
     assert [f"{field.name}: {field.meaning}" for field in shown.fields] == [
         *before,
@@ -47,17 +47,17 @@ def test_a_request(protocol: str) -> None:
 )
 def test_units_over_tcp(unit: int, words: str) -> None:
     raw = bytes.fromhex(f"0001 0000 0006 {unit:02X} 03 000C 0003")
-    (shown,) = new_explainer("modbus-tcp").explain(raw, Role.REQUEST)
+    (shown,) = new_explainer("modbus-tcp").explain(raw, FrameRole.REQUEST)
     assert shown.fields[3].meaning == words
 
 
 def test_everyone_on_a_serial_line() -> None:
-    (shown,) = new_explainer("modbus-ascii").explain(b":0006000C0001ED\r\n", Role.REQUEST)
+    (shown,) = new_explainer("modbus-ascii").explain(b":0006000C0001ED\r\n", FrameRole.REQUEST)
     assert shown.fields[1].meaning == "all (broadcast), nobody answers"
 
 
 def test_an_exception_of_a_gateway() -> None:
     """It is a gateway's word, and known: not a code that is in no list."""
     raw = bytes.fromhex("0001 0000 0003 01 83 0A")
-    (shown,) = new_explainer("modbus-tcp").explain(raw, Role.ANSWER)
+    (shown,) = new_explainer("modbus-tcp").explain(raw, FrameRole.ANSWER)
     assert shown.fields[-1].meaning == "REFUSED: the gateway says: it has no path to the PLC"

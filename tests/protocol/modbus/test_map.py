@@ -10,7 +10,7 @@ from fatektool.errors import DataError, UsageError
 from fatektool.protocol.elements import Element
 from fatektool.protocol.modbus.map import (
     STANDARD,
-    Area,
+    ModbusArea,
     ModbusMap,
     Reference,
     map_of_registers,
@@ -195,12 +195,12 @@ def test_groups_out_of_their_range_map_nothing() -> None:
 
 def test_what_can_be_read_only() -> None:
     own = map_of_registers(EXAMPLE)
-    assert own.place(Element("M", 1100)).area is Area.DISCRETE_INPUT
+    assert own.place(Element("M", 1100)).area is ModbusArea.DISCRETE_INPUT
     with pytest.raises(UsageError, match="M1100 has a Modbus reference to be read, none to be written"):
         own.place(Element("M", 1100), writes=True)
     both = parse_map("R0-R9=300001,R0-R4=400001")
-    assert both.place(Element("R", 3)).area is Area.HOLDING_REGISTER
-    assert both.place(Element("R", 7)).area is Area.INPUT_REGISTER
+    assert both.place(Element("R", 3)).area is ModbusArea.HOLDING_REGISTER
+    assert both.place(Element("R", 7)).area is ModbusArea.INPUT_REGISTER
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fatektool.simulator.plc import SimulatedPlc
-from fatektool.simulator.slaves.facon.frame import MAX_FRAME, FrameCutter
+from fatektool.simulator.slaves.facon.frame import MAX_FRAME, FaconCutter
 from fatektool.simulator.slaves.facon.slave import FaconSlave
 from tests.simulator.wire import answers, frame
 
@@ -55,7 +55,7 @@ def test_stx_starts_afresh(slave: FaconSlave) -> None:
 
 
 def test_frame_of_500_characters_is_the_longest() -> None:
-    cutter = FrameCutter()
+    cutter = FaconCutter()
     longest = frame("4E" + "x" * 500)
     assert len(longest) == MAX_FRAME
     assert cutter.feed(longest) == [(MAX_FRAME, longest)]
@@ -63,7 +63,7 @@ def test_frame_of_500_characters_is_the_longest() -> None:
 
 
 def test_buffer_is_bounded() -> None:
-    cutter = FrameCutter()
+    cutter = FaconCutter()
     cutter.feed(b"\x02")
     for _ in range(100):
         cutter.feed(b"x" * 100)
@@ -72,14 +72,14 @@ def test_buffer_is_bounded() -> None:
 
 
 def test_reset_forgets_what_has_begun() -> None:
-    cutter = FrameCutter()
+    cutter = FaconCutter()
     cutter.feed(STATUS[:4])
     cutter.reset()
     assert cutter.feed(STATUS[4:]) == []
 
 
 def test_end_counts_in_the_chunk_just_fed() -> None:
-    cutter = FrameCutter()
+    cutter = FaconCutter()
     assert cutter.feed(b"??" + STATUS + STATUS[:3]) == [(10, STATUS)]
     assert cutter.feed(STATUS[3:] + STATUS) == [(5, STATUS), (13, STATUS)]
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fatektool.simulator.plc import SimulatedPlc
-    from fatektool.simulator.slaves.modbus.framing import Framing
+    from fatektool.simulator.slaves.modbus.framing import SlaveFraming
 
 
 @pytest.fixture
@@ -58,7 +58,7 @@ def prepared(plc: SimulatedPlc) -> None:
     ids=["rtu", "ascii", "tcp"],
 )
 def test_the_worked_examples(
-    plc: SimulatedPlc, framing: Callable[[], Framing], framed: Callable[[str], bytes]
+    plc: SimulatedPlc, framing: Callable[[], SlaveFraming], framed: Callable[[str], bytes]
 ) -> None:
     prepared(plc)
     for exchange in EXCHANGES:

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fatektool.simulator.plc import SimulatedPlc
-from fatektool.simulator.slaves.mseries.frame import MAX_FRAME, FrameCutter
+from fatektool.simulator.slaves.mseries.frame import MAX_FRAME, MSeriesCutter
 from fatektool.simulator.slaves.mseries.slave import MSeriesSlave
 from tests.rows import each
 from tests.simulator.slaves.mseries_wire import framed, reply, request
@@ -115,7 +115,7 @@ def test_no_request_is_lost_behind_one_that_was_cut_off(slave: MSeriesSlave) -> 
 
 
 def test_what_is_found_behind_a_false_frame_ends_with_it() -> None:
-    cutter = FrameCutter()
+    cutter = MSeriesCutter()
     false = b"\x51\x10\x00\x30\x01\x4e"
     (found,) = cutter.feed(false + ASK + bytes(56 - len(false) - len(ASK)))
     assert found == (56, ASK)
@@ -131,7 +131,7 @@ def test_the_longest_frame(slave: MSeriesSlave) -> None:
 
 @pytest.mark.parametrize("begun", [b"\x51\x10\x01\x02\x01\x4e", b"\x51\x10\x02\x00", b"\x51\x10\x00"])
 def test_buffer_is_bounded(begun: bytes) -> None:
-    cutter = FrameCutter()
+    cutter = MSeriesCutter()
     for _ in range(100):
         for piece in (begun, b"x" * 100, b"\x51"):
             cutter.feed(piece)
@@ -142,13 +142,13 @@ def test_buffer_is_bounded(begun: bytes) -> None:
 
 
 def test_end_counts_in_the_chunk_just_fed() -> None:
-    cutter = FrameCutter()
+    cutter = MSeriesCutter()
     assert cutter.feed(b"??" + ASK + ASK[:3]) == [(12, ASK)]
     assert cutter.feed(ASK[3:] + ASK) == [(7, ASK), (17, ASK)]
 
 
 def test_reset_forgets_what_has_begun() -> None:
-    cutter = FrameCutter()
+    cutter = MSeriesCutter()
     cutter.feed(ASK[:4])
     cutter.reset()
     assert cutter.feed(ASK[4:]) == []

@@ -21,7 +21,7 @@ from fatektool.protocol.commands import (
 )
 from fatektool.protocol.fatek.codec import DataFields
 from fatektool.protocol.fatek.facon.text import TEXT
-from fatektool.protocol.fatek.fields import ROWS, Row, acknowledged, parse_empty
+from fatektool.protocol.fatek.fields import ROWS, CommandRow, acknowledged, parse_empty
 from fatektool.protocol.plc_errors import refusal
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ def _parse_write_page(w: Notation, data: bytes) -> WritePage:
 DATA: Final = DataFields(
     TEXT,
     {
-        Command.BRIEF_STATUS: Row(
+        Command.BRIEF_STATUS: CommandRow(
             lambda _w, _r: b"",
             parse_empty(ReadBriefStatus),
             lambda _w, _r: 2 * BRIEF_BYTES,
@@ -68,7 +68,7 @@ DATA: Final = DataFields(
             lambda w, _, answer: w.octets(answer.to_bytes()),
         ),
         **ROWS,
-        Command.READ_PAGE: Row(
+        Command.READ_PAGE: CommandRow(
             lambda _, r: b"%04X" % r.page,
             _parse_read_page,
             lambda _w, _r: 2 * PAGE_BYTES,
@@ -78,7 +78,7 @@ DATA: Final = DataFields(
         Command.WRITE_PAGE: acknowledged(
             lambda w, r: b"%04X%b" % (r.page, w.octets(r.data)), _parse_write_page
         ),
-        Command.DETAILED_STATUS: Row(
+        Command.DETAILED_STATUS: CommandRow(
             lambda _w, _r: b"",
             parse_empty(ReadDetailedStatus),
             lambda _w, _r: 2 * DETAILED_BYTES,

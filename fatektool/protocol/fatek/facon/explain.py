@@ -9,7 +9,7 @@ from fatektool.protocol.fatek.explain import FatekExplainer
 from fatektool.protocol.fatek.facon.codec import lrc
 
 if TYPE_CHECKING:
-    from fatektool.protocol.explain import Role
+    from fatektool.protocol.explain import FrameRole
 
 
 class FaconExplainer(FatekExplainer):
@@ -19,7 +19,7 @@ class FaconExplainer(FatekExplainer):
     binary: ClassVar[bool] = False
     cut_off: ClassVar[str] = "cut off: no ETX (03)"
 
-    def role_of(self, raw: bytes, role: Role) -> Role:
+    def role_of(self, raw: bytes, role: FrameRole) -> FrameRole:
         """What is known: the frame does not say it."""
         del raw
         return role

@@ -23,7 +23,7 @@ HEX_DIGITS: Final = b"0123456789ABCDEF"
 _LETTERS: Final = b"ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
 
-class Text(Notation):
+class TextNotation(Notation):
     """Characters."""
 
     unit = "characters"
@@ -106,4 +106,4 @@ class Text(Notation):
         return FrameError(f"expected the error character 0 before the data, got {data[:1]!r}", raw=data)
 
 
-TEXT: Final = Text()
+TEXT: Final = TextNotation()

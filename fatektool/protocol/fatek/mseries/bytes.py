@@ -29,7 +29,7 @@ _FIRST_LETTER: Final = ord("A") << 8
 """Below this an address has no letter for its high byte."""
 
 
-class Binary(Notation):
+class BinaryNotation(Notation):
     """Bytes."""
 
     unit = "bytes"
@@ -127,4 +127,4 @@ def _symbol_at(data: bytes, at: int) -> str | None:
     return None
 
 
-BINARY: Final = Binary()
+BINARY: Final = BinaryNotation()

@@ -18,7 +18,7 @@ from fatektool.protocol.commands import (
     ReadDetailedStatus,
 )
 from fatektool.protocol.fatek.codec import DataFields
-from fatektool.protocol.fatek.fields import ROWS, Row, parse_empty
+from fatektool.protocol.fatek.fields import ROWS, CommandRow, parse_empty
 from fatektool.protocol.fatek.mseries.bytes import BINARY
 from fatektool.protocol.fatek.mseries.errors import refusal
 from fatektool.protocol.status import BriefStatus, DetailedStatus, RawStatus
@@ -33,7 +33,7 @@ def _detailed(data: bytes) -> DetailedStatus | RawStatus:
 DATA: Final = DataFields(
     BINARY,
     {
-        Command.BRIEF_STATUS: Row(
+        Command.BRIEF_STATUS: CommandRow(
             lambda _w, _r: b"",
             parse_empty(ReadBriefStatus),
             lambda _w, _r: BRIEF_BYTES,
@@ -41,7 +41,7 @@ DATA: Final = DataFields(
             lambda _w, _r, answer: answer.to_bytes(),
         ),
         **ROWS,
-        Command.DETAILED_STATUS: Row(
+        Command.DETAILED_STATUS: CommandRow(
             lambda _w, _r: b"",
             parse_empty(ReadDetailedStatus),
             lambda _w, _r: DETAILED_BYTES,

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import ClassVar, Final
 
-from fatektool.protocol.explain import Field, Role
+from fatektool.protocol.explain import Field, FrameRole
 from fatektool.protocol.fatek.explain import FatekExplainer
 from fatektool.protocol.fatek.mseries.codec import QUERY, RESPONSE
 from fatektool.protocol.fatek.mseries.crc import crc_bytes
 
-_HEADERS: Final = {QUERY: Role.REQUEST, RESPONSE: Role.ANSWER}
+_HEADERS: Final = {QUERY: FrameRole.REQUEST, RESPONSE: FrameRole.ANSWER}
 
 
 class MseriesExplainer(FatekExplainer):
@@ -19,7 +19,7 @@ class MseriesExplainer(FatekExplainer):
     binary: ClassVar[bool] = True
     cut_off: ClassVar[str] = "a frame broke off"
 
-    def role_of(self, raw: bytes, role: Role) -> Role:
+    def role_of(self, raw: bytes, role: FrameRole) -> FrameRole:
         """What the header says."""
         del role
         return _HEADERS[raw[0]]
@@ -34,7 +34,7 @@ class MseriesExplainer(FatekExplainer):
         """Header to terminator."""
         expected = crc_bytes(raw[2:-4]).hex(" ").upper()
         return (
-            Field("header", raw[:1], self.role_of(raw, Role.EITHER).value),
+            Field("header", raw[:1], self.role_of(raw, FrameRole.EITHER).value),
             Field("ID", raw[1:2], "binary protocol"),
             Field("length", raw[2:4], f"{int.from_bytes(raw[2:4], 'big')} bytes of payload"),
             Field("station", raw[4:5], station),

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import re
 
-from fatektool.simulator.elements import KINDS, Kind
+from fatektool.simulator.elements import KINDS, SymbolKind
 from fatektool.simulator.refusal import Refusal, RefusalCode
 from fatektool.simulator.slaves.facon.frame import BYTE_OF
 from fatektool.simulator.slaves.fatek.fields import Fields
@@ -60,7 +60,7 @@ class FaconFields(Fields):
         require_hex(text)
         return bytes.fromhex(text.decode("ascii"))
 
-    def element(self, *widths: int) -> tuple[Kind, int]:
+    def element(self, *widths: int) -> tuple[SymbolKind, int]:
         """All letters are the symbol: DX is no D, though D is one."""
         letters = _LETTERS.match(self._data, self._position)
         end = letters.end() if letters else self._position

@@ -25,7 +25,7 @@ _STX = b"\x02"
 _ETX = b"\x03"
 
 
-class FrameCutter:
+class FaconCutter:
     """Cuts STX..ETX out of bytes in any chunking, with a buffer of at most one frame.
 
     STX starts a frame afresh wherever it comes, so that noise before it costs nothing. What is longer

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 
 from fatektool.simulator.models import DEFAULT_MODEL, PAGE_BYTES
 from fatektool.simulator.refusal import Refusal, RefusalCode
-from fatektool.simulator.slaves.base import Request, RequestKind, SlaveType, addressed
+from fatektool.simulator.slaves.base import RequestFrame, RequestKind, SlaveType, addressed
 from fatektool.simulator.slaves.facon import frame as facon_frame
 from fatektool.simulator.slaves.facon.fields import FaconFields, require_hex, to_hex
 from fatektool.simulator.slaves.fatek.commands import COMMANDS, KINDS
@@ -68,10 +68,10 @@ class FaconSlave(FatekSlave):
 
     def __init__(self, plcs: Mapping[int, SimulatedPlc], *, error_character: bool = True) -> None:
         super().__init__(plcs)
-        self._cutter = facon_frame.FrameCutter()
+        self._cutter = facon_frame.FaconCutter()
         self._good_if_any = b"0" if error_character else b""
 
-    def cut(self, data: bytes) -> list[Request]:
+    def cut(self, data: bytes) -> list[RequestFrame]:
         """Take bytes, whatever the chunking; give the requests that they complete."""
         requests = []
         for end, frame in self._cutter.feed(data):
@@ -79,7 +79,7 @@ class FaconSlave(FatekSlave):
             if station is not None:
                 command = frame[3:5]
                 kind = _KINDS.get(command, RequestKind.OTHER)
-                requests.append(Request(end, frame, station, command, frame[5:-3], kind))
+                requests.append(RequestFrame(end, frame, station, command, frame[5:-3], kind))
         return requests
 
     def readdressed(self, answer: bytes, station: int) -> bytes:
@@ -94,11 +94,11 @@ class FaconSlave(FatekSlave):
         """The PLC that has this number, else one whose station check is off."""
         return addressed(self.plcs, station)
 
-    def code_of(self, request: Request) -> int | None:
+    def code_of(self, request: RequestFrame) -> int | None:
         """Two hex digits, or whatever else stands there."""
         return facon_frame.BYTE_OF.get(request.command)
 
-    def framed(self, request: Request, data: bytes) -> bytes:
+    def framed(self, request: RequestFrame, data: bytes) -> bytes:
         """The answer to a request with this data."""
         return facon_frame.sealed(request.raw[:5] + data)
 
@@ -106,7 +106,7 @@ class FaconSlave(FatekSlave):
         """One hex digit."""
         return b"%X" % code
 
-    def execute(self, plc: SimulatedPlc, request: Request) -> bytes:
+    def execute(self, plc: SimulatedPlc, request: RequestFrame) -> bytes:
         """Let a PLC do what is asked; its answer. Those to 4F and 53 may lack the error character."""
         command = request.command
         if command not in {_READ_PAGE, _DETAILED_STATUS}:

@@ -33,7 +33,7 @@ from fatektool.simulator.slaves.base import RequestKind
 from fatektool.simulator.slaves.fatek.fields import Fields
 
 if TYPE_CHECKING:
-    from fatektool.simulator.elements import Kind
+    from fatektool.simulator.elements import SymbolKind
 
 MAX_DISCRETES = 256
 MAX_WORDS = 64
@@ -97,7 +97,7 @@ def _write_discretes(plc: SimulatedPlc, fields: Fields) -> bytes:
     return b""
 
 
-def _registers(fields: Fields) -> tuple[int, Kind, int]:
+def _registers(fields: Fields) -> tuple[int, SymbolKind, int]:
     count = fields.count(MAX_WORDS)
     kind, address = fields.element(16, 32)
     if count * kind.words > MAX_WORDS:

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 from fatektool.simulator.refusal import Refusal, RefusalCode
 
 if TYPE_CHECKING:
-    from fatektool.simulator.elements import Kind
+    from fatektool.simulator.elements import SymbolKind
 
 
 class Fields(ABC):
@@ -57,13 +57,13 @@ class Fields(ABC):
             raise Refusal(RefusalCode.ILLEGAL_VALUE)
         return value
 
-    def values(self, kind: Kind, count: int) -> list[int]:
+    def values(self, kind: SymbolKind, count: int) -> list[int]:
         """``count`` values of a register's width."""
         width = kind.bits // 8
         data = self.take_content(width * count)
         return [int.from_bytes(data[at : at + width], "big") for at in range(0, len(data), width)]
 
-    def written_value(self, kind: Kind, value: int) -> bytes:
+    def written_value(self, kind: SymbolKind, value: int) -> bytes:
         """One value for an answer."""
         if kind.bits == 1:
             return self.written_states(bytes((value,)))
@@ -82,7 +82,7 @@ class Fields(ABC):
         """``count`` bytes of content."""
 
     @abstractmethod
-    def element(self, *widths: int) -> tuple[Kind, int]:
+    def element(self, *widths: int) -> tuple[SymbolKind, int]:
         """An element of one of ``widths`` bits: its kind and address."""
 
     @abstractmethod

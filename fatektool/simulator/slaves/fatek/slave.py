@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from fatektool.simulator.plc import SimulatedPlc
-    from fatektool.simulator.slaves.base import Request
+    from fatektool.simulator.slaves.base import RequestFrame
     from fatektool.simulator.slaves.fatek.commands import Serve
     from fatektool.simulator.slaves.fatek.fields import Fields
 
@@ -42,11 +42,11 @@ class FatekSlave(ABC):
         self.plcs = plcs
 
     @abstractmethod
-    def code_of(self, request: Request) -> int | None:
+    def code_of(self, request: RequestFrame) -> int | None:
         """The command's code; None for what no code is written as."""
 
     @abstractmethod
-    def framed(self, request: Request, data: bytes) -> bytes:
+    def framed(self, request: RequestFrame, data: bytes) -> bytes:
         """The answer to a request with this data."""
 
     @abstractmethod
@@ -57,7 +57,7 @@ class FatekSlave(ABC):
         """Who answers under this number."""
         return self.plcs.get(station)
 
-    def answer(self, request: Request) -> bytes | None:
+    def answer(self, request: RequestFrame) -> bytes | None:
         """Execute a request; None for a broadcast and for stations that are not here."""
         if request.station == BROADCAST:
             for plc in self.plcs.values():
@@ -66,7 +66,7 @@ class FatekSlave(ABC):
         here = self.addressed(request.station)
         return None if here is None else self.execute(here, request)
 
-    def execute(self, plc: SimulatedPlc, request: Request) -> bytes:
+    def execute(self, plc: SimulatedPlc, request: RequestFrame) -> bytes:
         """Let a PLC do what is asked; its answer."""
         code = self.code_of(request)
         try:

@@ -7,7 +7,7 @@
 
 from __future__ import annotations
 
-from fatektool.simulator.slaves.modbus.framing import MAX_STATION, Cut
+from fatektool.simulator.slaves.modbus.framing import MAX_STATION, CutRequest
 from fatektool.simulator.slaves.modbus.slave import slave_type
 
 MAX_ASCII = 513
@@ -28,11 +28,11 @@ class AsciiFraming:
     def __init__(self) -> None:
         self._begun = b""
 
-    def feed(self, data: bytes) -> list[Cut]:
+    def feed(self, data: bytes) -> list[CutRequest]:
         """Requests that ``data`` completes."""
         carried = len(self._begun)
         stream = self._begun + data
-        found: list[Cut] = []
+        found: list[CutRequest] = []
         position = 0
         while (end := stream.find(b"\r\n", position) + 2) > 1:
             start = stream.rfind(b":", position, end)
@@ -40,7 +40,7 @@ class AsciiFraming:
             if start >= 0 and 6 <= len(digits) <= MAX_ASCII and _all_hex(digits):
                 content = bytes.fromhex(digits.decode("ascii"))
                 if lrc(content[:-1]) == content[-1] and content[0] <= MAX_STATION:
-                    found.append(Cut(end - carried, stream[start:end], content[:-1]))
+                    found.append(CutRequest(end - carried, stream[start:end], content[:-1]))
             position = end
         start = stream.rfind(b":", position)
         self._begun = stream[start:] if start >= 0 and len(stream) - start < MAX_ASCII else b""

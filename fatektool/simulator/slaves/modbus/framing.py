@@ -10,7 +10,7 @@ from typing import NamedTuple, Protocol
 MAX_STATION = 247
 
 
-class Cut(NamedTuple):
+class CutRequest(NamedTuple):
     """A request: its end as an offset in the bytes just fed, its bytes, and station, function and data."""
 
     end: int
@@ -18,7 +18,7 @@ class Cut(NamedTuple):
     body: bytes
 
 
-class Framing(Protocol):
+class SlaveFraming(Protocol):
     """One way to put a body, which is station, function and data, on a wire."""
 
     @property
@@ -29,7 +29,7 @@ class Framing(Protocol):
     def own_units(self) -> frozenset[int]:
         """The stations that mean the PLC at the address itself."""
 
-    def feed(self, data: bytes) -> list[Cut]:
+    def feed(self, data: bytes) -> list[CutRequest]:
         """Requests that ``data`` completes, their checksums right."""
 
     def sealed(self, body: bytes, request: bytes) -> bytes:

@@ -30,7 +30,7 @@ _SETTINGS = 3968
 _SETTING_COUNT = 13
 
 
-class Span(NamedTuple):
+class MapSpan(NamedTuple):
     """Addresses ``start`` to ``start + length - 1`` are elements from ``first`` on."""
 
     start: int
@@ -48,20 +48,20 @@ class Piece(NamedTuple):
 
 
 _COILS = (
-    Span(0, "Y", 0, 256),
-    Span(1000, "X", 0, 256),
-    Span(2000, "M", 0, 2002),
-    Span(6000, "S", 0, 1000),
-    Span(9000, "T", 0, 256),
-    Span(9500, "C", 0, 256),
+    MapSpan(0, "Y", 0, 256),
+    MapSpan(1000, "X", 0, 256),
+    MapSpan(2000, "M", 0, 2002),
+    MapSpan(6000, "S", 0, 1000),
+    MapSpan(9000, "T", 0, 256),
+    MapSpan(9500, "C", 0, 256),
 )
 _REGISTERS = (
-    Span(0, "R", 0, 4168),
-    Span(5000, "R", 5000, 999),
-    Span(6000, "D", 0, 2999),
-    Span(9000, "RT", 0, 256),
-    Span(9500, "RC", 0, 200),
-    Span(9700, LONG_COUNTER, 0, 112),
+    MapSpan(0, "R", 0, 4168),
+    MapSpan(5000, "R", 5000, 999),
+    MapSpan(6000, "D", 0, 2999),
+    MapSpan(9000, "RT", 0, 256),
+    MapSpan(9500, "RC", 0, 200),
+    MapSpan(9700, LONG_COUNTER, 0, 112),
 )
 _M_LAST, _M_MOST = 2001, 2001
 _R_LAST, _R_MOST = 3839, 3840
@@ -73,7 +73,7 @@ def pieces(plc: SimulatedPlc, function: int, address: int, count: int) -> list[P
     return list(_cut(spans, address, count))
 
 
-def _cut(spans: tuple[Span, ...], address: int, count: int) -> Iterator[Piece]:
+def _cut(spans: tuple[MapSpan, ...], address: int, count: int) -> Iterator[Piece]:
     while count:
         for span in spans:
             within = address - span.start
@@ -87,7 +87,7 @@ def _cut(spans: tuple[Span, ...], address: int, count: int) -> Iterator[Piece]:
             raise Refusal(RefusalCode.ILLEGAL_ADDRESS)
 
 
-def _spans(plc: SimulatedPlc, function: int) -> tuple[Span, ...]:
+def _spans(plc: SimulatedPlc, function: int) -> tuple[MapSpan, ...]:
     settings = plc.read_words("R", _SETTINGS, _SETTING_COUNT)
     own = settings[0] == _OWN
     if function == 2:
@@ -99,8 +99,8 @@ def _spans(plc: SimulatedPlc, function: int) -> tuple[Span, ...]:
     return _laid(settings[10:13], "R", _R_LAST, _R_MOST) if own else _REGISTERS
 
 
-def _laid(group: list[int], symbol: str, last: int, most: int) -> tuple[Span, ...]:
+def _laid(group: list[int], symbol: str, last: int, most: int) -> tuple[MapSpan, ...]:
     start, first, count = group
     if first > last or not 1 <= count <= most:
         return ()
-    return (Span(start, symbol, first, count),)
+    return (MapSpan(start, symbol, first, count),)

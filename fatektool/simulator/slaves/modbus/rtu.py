@@ -13,7 +13,7 @@ that was cut off is given up when what came behind it shows that its CRC is wron
 
 from __future__ import annotations
 
-from fatektool.simulator.slaves.modbus.framing import MAX_STATION, Cut
+from fatektool.simulator.slaves.modbus.framing import MAX_STATION, CutRequest
 from fatektool.simulator.slaves.modbus.slave import slave_type
 
 MAX_RTU = 256
@@ -41,17 +41,17 @@ class RtuFraming:
     def __init__(self) -> None:
         self._begun = b""
 
-    def feed(self, data: bytes) -> list[Cut]:
+    def feed(self, data: bytes) -> list[CutRequest]:
         """Requests that ``data`` completes."""
         carried = len(self._begun)
         stream = self._begun + data
-        found: list[Cut] = []
+        found: list[CutRequest] = []
         at = start = 0
         while at < len(stream):
             size = _rtu_size(stream[at : at + MAX_RTU])
             if size > 0:
                 raw = stream[at : at + size]
-                found.append(Cut(at + size - carried, raw, raw[:-2]))
+                found.append(CutRequest(at + size - carried, raw, raw[:-2]))
                 at = start = at + size
             elif size == 0:  # it could be one yet
                 break

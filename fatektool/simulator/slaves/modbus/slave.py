@@ -27,14 +27,14 @@ from struct import pack
 from typing import TYPE_CHECKING
 
 from fatektool.simulator.refusal import Refusal, RefusalCode
-from fatektool.simulator.slaves.base import BROADCAST, Request, RequestKind, SlaveType, addressed
+from fatektool.simulator.slaves.base import BROADCAST, RequestFrame, RequestKind, SlaveType, addressed
 from fatektool.simulator.slaves.modbus.map import LONG_COUNTER, Piece, pieces
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from fatektool.simulator.plc import SimulatedPlc
-    from fatektool.simulator.slaves.modbus.framing import Framing
+    from fatektool.simulator.slaves.modbus.framing import SlaveFraming
 
 MAX_READ_BITS, MAX_READ_WORDS = 2000, 125
 MAX_WRITE_BITS, MAX_WRITE_WORDS = 1968, 123
@@ -51,7 +51,7 @@ class ModbusSlave:
         framing: RTU, ASCII or TCP, used by this line alone.
     """
 
-    def __init__(self, plcs: Mapping[int, SimulatedPlc], framing: Framing) -> None:
+    def __init__(self, plcs: Mapping[int, SimulatedPlc], framing: SlaveFraming) -> None:
         self.plcs = plcs
         self._framing = framing
 
@@ -60,11 +60,11 @@ class ModbusSlave:
         """What begins and ends an answer."""
         return self._framing.delimiters
 
-    def cut(self, data: bytes) -> list[Request]:
+    def cut(self, data: bytes) -> list[RequestFrame]:
         """Take bytes, whatever the chunking; give the requests that they complete."""
         own = self._framing.own_units
         return [
-            Request(
+            RequestFrame(
                 found.end,
                 found.raw,
                 next(iter(self.plcs), 1) if found.body[0] in own else found.body[0],
@@ -75,7 +75,7 @@ class ModbusSlave:
             for found in self._framing.feed(data)
         ]
 
-    def answer(self, request: Request) -> bytes | None:
+    def answer(self, request: RequestFrame) -> bytes | None:
         """Execute a request; None for a broadcast and for stations that are not here."""
         if request.station == BROADCAST:
             for plc in self.plcs.values():
@@ -95,7 +95,7 @@ class ModbusSlave:
         self._framing.reset()
 
 
-def _execute(plc: SimulatedPlc, request: Request) -> bytes:
+def _execute(plc: SimulatedPlc, request: RequestFrame) -> bytes:
     function = request.command[0]
     serve = _FUNCTIONS.get(function)
     if serve is None:
@@ -205,7 +205,7 @@ _FUNCTIONS: dict[int, Callable[[SimulatedPlc, int, bytes], bytes]] = {
 }
 
 
-def slave_type(make_framing: Callable[[], Framing], bits_per_char: float) -> SlaveType:
+def slave_type(make_framing: Callable[[], SlaveFraming], bits_per_char: float) -> SlaveType:
     """A Modbus slave with a framing of its own for each line."""
 
     def make(plcs: Mapping[int, SimulatedPlc]) -> ModbusSlave:

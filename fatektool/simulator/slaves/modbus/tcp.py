@@ -7,7 +7,7 @@
 
 from __future__ import annotations
 
-from fatektool.simulator.slaves.modbus.framing import Cut
+from fatektool.simulator.slaves.modbus.framing import CutRequest
 from fatektool.simulator.slaves.modbus.slave import slave_type
 
 MAX_LENGTH = 254
@@ -23,11 +23,11 @@ class TcpFraming:
     def __init__(self) -> None:
         self._begun = b""
 
-    def feed(self, data: bytes) -> list[Cut]:
+    def feed(self, data: bytes) -> list[CutRequest]:
         """Requests that ``data`` completes."""
         carried = len(self._begun)
         stream = self._begun + data
-        found: list[Cut] = []
+        found: list[CutRequest] = []
         at = 0
         while len(stream) - at >= _TCP_HEAD:
             length = int.from_bytes(stream[at + 4 : at + 6], "big")
@@ -37,7 +37,7 @@ class TcpFraming:
             end = at + 6 + length
             if end > len(stream):
                 break
-            found.append(Cut(end - carried, stream[at:end], stream[at + 6 : end]))
+            found.append(CutRequest(end - carried, stream[at:end], stream[at + 6 : end]))
             at = end
         self._begun = stream[at:]
         return found

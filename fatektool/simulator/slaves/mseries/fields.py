@@ -14,7 +14,7 @@ paper, section 2.4).
 
 from __future__ import annotations
 
-from fatektool.simulator.elements import KINDS, Kind
+from fatektool.simulator.elements import KINDS, SymbolKind
 from fatektool.simulator.refusal import Refusal, RefusalCode
 from fatektool.simulator.slaves.fatek.fields import Fields
 
@@ -37,7 +37,7 @@ class MSeriesFields(Fields):
         """As it is."""
         return self.take(count)
 
-    def element(self, *widths: int) -> tuple[Kind, int]:
+    def element(self, *widths: int) -> tuple[SymbolKind, int]:
         """The longest symbol that is there, and two bytes."""
         start = self._position
         for length in _SYMBOL_LENGTHS:

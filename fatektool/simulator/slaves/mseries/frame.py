@@ -49,7 +49,7 @@ _PAYLOADS = {
 """How long the payload of each command's request can be, by its limits (M-series paper, section 2.2)."""
 
 
-class FrameCutter:
+class MSeriesCutter:
     """Cuts requests out of bytes in any chunking, with a buffer of less than one longest frame."""
 
     def __init__(self) -> None:

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fatektool.simulator.slaves.base import Request, RequestKind, SlaveType
+from fatektool.simulator.slaves.base import RequestFrame, RequestKind, SlaveType
 from fatektool.simulator.slaves.fatek.commands import COMMANDS, KINDS
 from fatektool.simulator.slaves.fatek.slave import FatekSlave
 from fatektool.simulator.slaves.mseries import frame as mseries_frame
@@ -46,15 +46,15 @@ class MSeriesSlave(FatekSlave):
 
     def __init__(self, plcs: Mapping[int, SimulatedPlc]) -> None:
         super().__init__(plcs)
-        self._cutter = mseries_frame.FrameCutter()
+        self._cutter = mseries_frame.MSeriesCutter()
 
-    def cut(self, data: bytes) -> list[Request]:
+    def cut(self, data: bytes) -> list[RequestFrame]:
         """Take bytes, whatever the chunking; give the requests that they complete."""
         requests = []
         for end, frame in self._cutter.feed(data):
             payload = mseries_frame.payload_of(frame)
             kind = KINDS.get(payload[1], RequestKind.OTHER)
-            requests.append(Request(end, frame, payload[0], payload[1:2], payload[2:], kind))
+            requests.append(RequestFrame(end, frame, payload[0], payload[1:2], payload[2:], kind))
         return requests
 
     def readdressed(self, answer: bytes, station: int) -> bytes:
@@ -65,11 +65,11 @@ class MSeriesSlave(FatekSlave):
         """Forget an unfinished request."""
         self._cutter.reset()
 
-    def code_of(self, request: Request) -> int:
+    def code_of(self, request: RequestFrame) -> int:
         """One byte."""
         return request.command[0]
 
-    def framed(self, request: Request, data: bytes) -> bytes:
+    def framed(self, request: RequestFrame, data: bytes) -> bytes:
         """The answer to a request with this data."""
         return mseries_frame.sealed(mseries_frame.ANSWER, bytes((request.station,)) + request.command + data)
 

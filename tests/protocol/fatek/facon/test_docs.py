@@ -10,7 +10,7 @@ import pytest
 from fatektool.errors import FrameError
 from fatektool.protocol.commands import COMMAND_WORDS, Command
 from fatektool.protocol.elements import KINDS, Element
-from fatektool.protocol.explain import Explanation, Role
+from fatektool.protocol.explain import Explanation, FrameRole
 from fatektool.protocol.fatek.facon.codec import FACON
 from fatektool.protocol.fatek.facon.text import TEXT
 from fatektool.protocol.plc_errors import MEANINGS
@@ -87,7 +87,7 @@ def test_examples(heading: str, frames: list[Shown]) -> None:
             assert error.checksum
             assert error.message == shown.words
             continue
-        role = Role.REQUEST if shown.kind == "request" else Role.ANSWER
+        role = FrameRole.REQUEST if shown.kind == "request" else FrameRole.ANSWER
         (explanation,) = explainer.explain(shown.raw, role)
         assert (explanation.role, explanation.fault) == (role, None)
         assert words(explanation) == shown.words

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from fatektool.protocol.elements import KINDS, Element
-from fatektool.protocol.explain import Role
+from fatektool.protocol.explain import FrameRole
 from fatektool.protocol.fatek.mseries.bytes import BINARY
 from fatektool.protocol.fatek.mseries.codec import MAX_PAYLOAD, MSERIES
 from fatektool.protocol.fatek.mseries.crc import crc16
@@ -33,7 +33,7 @@ def test_examples(heading: str, frames: list[Shown]) -> None:
     command = re.match(r"[0-9A-F]{2}(?= )", heading)
     for shown in frames:
         (explanation,) = explainer.explain(shown.raw)
-        role = Role.REQUEST if shown.kind == "request" else Role.ANSWER
+        role = FrameRole.REQUEST if shown.kind == "request" else FrameRole.ANSWER
         assert (explanation.role, explanation.fault) == (role, None)
         assert words(explanation, BEFORE) == shown.words
         if command:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from fatektool.protocol.commands import Command, ReadDetailedStatus, ReadRegisters
 from fatektool.protocol.elements import Element
-from fatektool.protocol.explain import Explanation, Role
+from fatektool.protocol.explain import Explanation, FrameRole
 from fatektool.protocol.fatek.mseries.codec import MSERIES
 from fatektool.protocol.registry import new_explainer
 from fatektool.protocol.status import RawStatus
@@ -29,14 +29,14 @@ def explained(*pieces: bytes) -> list[Explanation]:
     explainer = new_explainer("mseries")
     found = []
     for data in pieces:
-        here = list(explainer.explain(data, Role.EITHER))
+        here = list(explainer.explain(data, FrameRole.EITHER))
         assert b"".join(explanation.raw for explanation in here) == data
         for explanation in here:
             assert b"".join(field.raw for field in explanation.fields) == explanation.raw
             assert all(field.name for field in explanation.fields)
             assert (explanation.station is None) == (explanation.command is None)
-            assert (explanation.role is Role.BROKEN) == (explanation.checksum_ok is not True)
-            if explanation.role is Role.BROKEN:
+            assert (explanation.role is FrameRole.BROKEN) == (explanation.checksum_ok is not True)
+            if explanation.role is FrameRole.BROKEN:
                 assert explanation.fault
         found += here
     return found
@@ -54,7 +54,7 @@ def data_fields(explanation: Explanation) -> list[tuple[str, str, str]]:
 def test_examples(example: Example) -> None:
     for pieces in ((example.asks, example.answers), (example.asks + example.answers,)):
         asks, answers = explained(*pieces)
-        assert (asks.role, answers.role) == (Role.REQUEST, Role.ANSWER)
+        assert (asks.role, answers.role) == (FrameRole.REQUEST, FrameRole.ANSWER)
         for explanation in (asks, answers):
             assert (explanation.station, explanation.command) == (1, example.request.command)
             assert explanation.checksum_ok
@@ -122,7 +122,7 @@ def test_an_answer_that_does_not_fit_its_request_is_called_so() -> None:
 def test_an_echo_is_the_request_again() -> None:
     asks = MSERIES.encode(1, R12)
     _, echo, answer = explained(asks, asks + MSERIES.encode_answer(1, R12, (1, 2, 3)))
-    assert (echo.role, echo.fault) == (Role.REQUEST, None)
+    assert (echo.role, echo.fault) == (FrameRole.REQUEST, None)
     assert data_fields(answer)[1][0] == "R12"
 
 
@@ -140,7 +140,7 @@ def test_refusals(code: int, meaning: str) -> None:
 def test_a_wrong_crc() -> None:
     raw = FRAMES[0][:-4] + b"\x84\xa1\x55\xaa"
     (explanation,) = explained(raw)
-    assert (explanation.role, explanation.checksum_ok) == (Role.BROKEN, False)
+    assert (explanation.role, explanation.checksum_ok) == (FrameRole.BROKEN, False)
     assert explanation.fault == "checksum: expected A1 84, got 84 A1"
     assert explanation.fields[-2].meaning == "WRONG: expected A1 84"
 
@@ -148,11 +148,11 @@ def test_a_wrong_crc() -> None:
 def test_noise_and_what_is_cut_off() -> None:
     found = explained(b"\x00\xaa" + FRAMES[0] + b"\x51" + FRAMES[1] + FRAMES[2][:7])
     assert [(one.role, one.raw) for one in found] == [
-        (Role.BROKEN, b"\x00\xaa"),
-        (Role.REQUEST, FRAMES[0]),
-        (Role.BROKEN, b"\x51"),
-        (Role.ANSWER, FRAMES[1]),
-        (Role.BROKEN, FRAMES[2][:7]),
+        (FrameRole.BROKEN, b"\x00\xaa"),
+        (FrameRole.REQUEST, FRAMES[0]),
+        (FrameRole.BROKEN, b"\x51"),
+        (FrameRole.ANSWER, FRAMES[1]),
+        (FrameRole.BROKEN, FRAMES[2][:7]),
     ]
     assert found[-1].fault == "a frame broke off"
 
@@ -219,8 +219,8 @@ def test_any_exchange(station: int, exchange: tuple[Any, Any]) -> None:
     asks, answers = explained(
         MSERIES.encode(station, request), MSERIES.encode_answer(station, request, answer)
     )
-    assert (asks.role, asks.fault) == (Role.REQUEST, None)
-    assert (answers.role, answers.fault) == (Role.ANSWER, None)
+    assert (asks.role, asks.fault) == (FrameRole.REQUEST, None)
+    assert (answers.role, answers.fault) == (FrameRole.ANSWER, None)
 
 
 def test_more_than_a_decoder_keeps() -> None:
