@@ -12,7 +12,8 @@ from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.image_words import warn_of_image
 from fatektool.cli.shared.options import PATH
 from fatektool.cli.shared.output import Voice, table
-from fatektool.cli.shared.write_back import Offer, Terms, Writing, write_options
+from fatektool.cli.shared.write_back import Offer, Writing
+from fatektool.cli.shared.write_options import Terms, write_options
 from fatektool.errors import UsageError
 from fatektool.files.atomic import read_bounded
 from fatektool.jobs.programs.restore import (

@@ -14,7 +14,8 @@ from fatektool.cli.shared.modbus_map import modbus_map_option
 from fatektool.cli.shared.options import PATH
 from fatektool.cli.shared.put_values import offer_of, put_values, result_lines
 from fatektool.cli.shared.unfinished import forget_those_undone
-from fatektool.cli.shared.write_back import Terms, Writing, write_options
+from fatektool.cli.shared.write_back import Writing
+from fatektool.cli.shared.write_options import Terms, write_options
 from fatektool.errors import PlcError
 from fatektool.jobs.elements.reads import named
 from fatektool.jobs.snapshots.apply import ApplyPlan, plan_apply

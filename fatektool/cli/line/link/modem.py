@@ -22,7 +22,8 @@ from fatektool.cli.shared.put_values import (
     put_values,
     result_lines,
 )
-from fatektool.cli.shared.write_back import Terms, Writing, write_options
+from fatektool.cli.shared.write_back import Writing
+from fatektool.cli.shared.write_options import Terms, write_options
 from fatektool.errors import PlcError
 from fatektool.jobs.plcports.host import LinkHost, read_host
 from fatektool.jobs.plcports.modem import ModemReport, ModemSettings, plan_modem, read_modem
