@@ -70,6 +70,28 @@ class NetworkChange:
         return Change.REMOVED if self.b is None else Change.CHANGED
 
     @property
+    def removed(self) -> frozenset[int]:
+        """The numbers of the first program's instructions that the second does not have."""
+        return self._numbers(self.a)
+
+    @property
+    def added(self) -> frozenset[int]:
+        """The numbers of the second program's instructions that the first does not have."""
+        return self._numbers(self.b)
+
+    def _numbers(self, network: Network | None) -> frozenset[int]:
+        if network is None:
+            return frozenset()
+        if self.a is None or self.b is None:
+            return frozenset(number for number, _, _ in network.places)
+        places: set[int] = set()
+        for block in align(*([each.words for each in side.instructions] for side in (self.a, self.b))):
+            if not block.equal:
+                here = (block.a_first, block.a_end) if network is self.a else (block.b_first, block.b_end)
+                places.update(range(*here))
+        return frozenset(network.first + place for place in places)
+
+    @property
     def name(self) -> str:
         """The number that it has now, or had: ``N0009``."""
         network = self.b or self.a

@@ -1,14 +1,17 @@
-"""``listing``: a program's instructions in tables, a network each."""
+"""``listing``: a program's networks, each drawn and as a table of its instructions."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from fatektool.report.ladder import ladder, not_drawn
 from fatektool.report.markup import Html, counted, figure, table, tag
 from fatektool.report.page import Report, Verdict, code, note, render, section
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from fatektool.ladder.networks import Network
 
 _SAID = {
     "A": "",
@@ -17,16 +20,16 @@ _SAID = {
 }
 
 
-def listing_report(document: Mapping[str, Any], *, time: str) -> str:
+def listing_report(document: Mapping[str, Any], networks: Sequence[Network], *, time: str) -> str:
     """A listing as a page.
 
     Args:
         document: ``fatektool.listing/1``.
+        networks: the same networks, to be drawn.
         time: the present, UTC, RFC 3339.
     """
     header = document["header"]
-    networks = document["networks"]
-    instructions = sum(len(network["instructions"]) for network in networks)
+    instructions = sum(len(network.instructions) for network in networks)
     unknown = document["unknown_words"]
     said = f"{counted(instructions, 'instruction')} in {counted(len(networks), 'network')}."
     left = (
@@ -47,7 +50,7 @@ def listing_report(document: Mapping[str, Any], *, time: str) -> str:
             document["file"],
             Verdict("Listed", f"{said} {left}"),
             facts,
-            [_legend(), *_networks(document)],
+            [_legend(), *_networks(document, networks)],
             document["schema"],
             time,
         )
@@ -64,9 +67,9 @@ def _legend() -> Html:
     )
 
 
-def _networks(document: Mapping[str, Any]) -> Iterator[Html]:
+def _networks(document: Mapping[str, Any], networks: Sequence[Network]) -> Iterator[Html]:
     comments = document["comments"]
-    for network in document["networks"]:
+    for network, drawn in zip(document["networks"], networks, strict=True):
         name = f"N{network['number']:04}"
         rows = [
             (
@@ -81,6 +84,19 @@ def _networks(document: Mapping[str, Any]) -> Iterator[Html]:
         yield section(
             name,
             tag("p", network["comment"]) if network["comment"] else "",
-            table(f"Network {name}", ("Number", "Instruction", "Comments", "Evidence"), rows, numeric=(0,)),
+            *_drawn(drawn, comments, rows),
             id_=name.lower(),
         )
+
+
+def _drawn(
+    network: Network, comments: Mapping[str, str], rows: Sequence[Sequence[object]]
+) -> tuple[Html, Html]:
+    """A network's ladder with its instructions to open; if it cannot be drawn, the reason and the table."""
+    listed = table(
+        f"Network {network.name}", ("Number", "Instruction", "Comments", "Evidence"), rows, numeric=(0,)
+    )
+    shown = ladder(network, comments, f"ladder-{network.name.lower()}")
+    if shown is None:
+        return not_drawn(network), listed
+    return shown, tag("details", tag("summary", f"Instructions of {network.name}"), listed)

@@ -12,12 +12,14 @@ from typing import TYPE_CHECKING, Any, Final
 from fatektool.program.headers.header import PAGE_WORDS
 from fatektool.program.image import page_count
 from fatektool.report.markup import DASH, Html, counted, figure, table, tag, when
+from fatektool.report.networks import changed_networks
 from fatektool.report.page import Report, Verdict, code, note, render, section
 from fatektool.report.page_map import page_map
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from fatektool.ladder.differences import NetworkChange
     from fatektool.program.image import Program
 
 MOST_PAGES: Final = 64
@@ -25,12 +27,19 @@ _ROW: Final = 8
 _PLACES_SHOWN: Final = 12
 
 
-def verify_report(document: Mapping[str, Any], program: Program) -> str:
+def verify_report(
+    document: Mapping[str, Any],
+    program: Program,
+    changes: Sequence[NetworkChange] = (),
+    comments: Mapping[str, str] | None = None,
+) -> str:
     """The PLC's program against a backup.
 
     Args:
         document: ``fatektool.verify/1``.
         program: the backup's.
+        changes: the networks that differ, to be drawn.
+        comments: of elements.
     """
     where = f"station {document['station']} on {document['target']}"
     facts = [
@@ -40,10 +49,21 @@ def verify_report(document: Mapping[str, Any], program: Program) -> str:
         ("Time", when(document["time"])),
     ]
     title, what = "Program on file and in the PLC", f"{document['file']} and {where}"
-    return _report(document, (program, None), ("file", "PLC"), (title, what, document["time"]), facts)
+    sides = ("file", "PLC")
+    networks = changed_networks(document["networks"] or (), changes, comments or {}, sides)
+    names = (title, what, document["time"])
+    return _report(document, (program, None), sides, names, facts, networks=networks)
 
 
-def diff_report(document: Mapping[str, Any], a: Program, b: Program, *, time: str) -> str:
+def diff_report(
+    document: Mapping[str, Any],
+    a: Program,
+    b: Program,
+    *,
+    time: str,
+    changes: Sequence[NetworkChange] = (),
+    comments: Mapping[str, str] | None = None,
+) -> str:
     """Two backups against each other.
 
     Args:
@@ -51,6 +71,8 @@ def diff_report(document: Mapping[str, Any], a: Program, b: Program, *, time: st
         a: the first program.
         b: the second.
         time: the present, UTC, RFC 3339.
+        changes: the networks that differ, to be drawn.
+        comments: of elements.
     """
     facts: list[tuple[str, object]] = []
     for side in ("a", "b"):
@@ -59,7 +81,9 @@ def diff_report(document: Mapping[str, Any], a: Program, b: Program, *, time: st
             (f"SHA-256 of {side.upper()}'s program", code(document[side]["sha256"])),
         ]
     what = f"{document['a']['file']} (A) and {document['b']['file']} (B)"
-    return _report(document, (a, b), ("A", "B"), ("Two programs", what, time), facts)
+    sides = ("A", "B")
+    networks = changed_networks(document["networks"] or (), changes, comments or {}, sides)
+    return _report(document, (a, b), sides, ("Two programs", what, time), facts, networks=networks)
 
 
 def _report(
@@ -68,6 +92,8 @@ def _report(
     sides: tuple[str, str],
     names: tuple[str, str, str],
     facts: Sequence[tuple[str, object]],
+    *,
+    networks: Html,
 ) -> str:
     """The report.
 
@@ -77,6 +103,7 @@ def _report(
         sides: what the two are called.
         names: title, what of, and when.
         facts: what is at the top, before the sizes.
+        networks: the section on those that differ.
     """
     title, what, time = names
     sizes = document["a_ladder_words"], document["b_ladder_words"]
@@ -90,7 +117,7 @@ def _report(
     pages = _pages(document, programs)
     sections = [_map(document, pages)]
     if document["networks"]:
-        sections.append(_networks(document["networks"]))
+        sections.append(networks)
     if document["differences"]:
         sections += [_changes(document, sides), _words(document, programs, sides)]
     return render(
@@ -141,22 +168,6 @@ def _map(document: Mapping[str, Any], pages: int) -> Html:
     said = "The program's header comes first. A page is 64 words."
     drawn = page_map("map", "The program's pages", pages, changed)
     return section("Map of the pages", tag("p", said), tag("figure", drawn))
-
-
-def _networks(networks: Sequence[Mapping[str, Any]]) -> Html:
-    """The networks that differ, their instructions as in a unified diff."""
-    return section("Networks that differ", *(_network(network) for network in networks), id_="networks")
-
-
-def _network(network: Mapping[str, Any]) -> Html:
-    numbers = [f"N{network[side]:04}" for side in ("a", "b") if network[side] is not None]
-    name = f"{' → '.join(dict.fromkeys(numbers))} {network['change']}"
-    signs = {"-": "removed", "+": "added", " ": "as before"}
-    rows = [
-        (signs[line[0]], tag("mark", tag("code", line[1:])) if line[0] != " " else tag("code", line[1:]))
-        for line in network["lines"]
-    ]
-    return table(name, ("Change", "Instruction"), rows)
 
 
 def _changes(document: Mapping[str, Any], sides: tuple[str, str]) -> Html:

@@ -105,6 +105,17 @@ svg .strong{fill:var(--ink);paint-order:stroke;stroke:var(--paper);stroke-width:
 .under{fill:var(--line);fill-opacity:.25;stroke:none}
 .gap{stroke:var(--bad);stroke-width:1;fill:none}
 .limit{stroke:var(--ink);stroke-width:1.25;stroke-dasharray:5 3;fill:none}
+.ladder{width:auto;height:auto;max-width:none}
+.ladder text{font-family:ui-monospace,"SFMono-Regular",Consolas,"DejaVu Sans Mono",monospace;font-size:13px}
+.wire{stroke:var(--ink);stroke-width:1.25;fill:none;stroke-linecap:square}
+.sign{stroke:var(--ink);stroke-width:1.75;fill:none}
+.rail{stroke:var(--ink);stroke-width:3;fill:none}
+.added rect{stroke:var(--good);stroke-width:2;fill:none}
+.removed rect{stroke:var(--bad);stroke-width:2;fill:none;stroke-dasharray:5 3}
+.ladder .added text{fill:var(--good);font-weight:700}
+.ladder .removed text{fill:var(--bad);font-weight:700}
+.side{flex:1 1 30rem;min-width:0;max-width:100%}
+.network{break-inside:avoid}
 .cell{fill:none;stroke:var(--quiet);stroke-width:1}
 .changed .box{fill:var(--bad);stroke:var(--bad);stroke-width:1}
 .changed .cross{fill:none;stroke:var(--paper);stroke-width:2}
@@ -114,7 +125,7 @@ footer{margin-top:3rem;border-top:1px solid var(--rule);padding-top:.5rem;
 @media (max-width:40rem){
 body{padding:.5rem .9rem 2rem}
 h1{font-size:1.4rem}
-svg text{font-size:14px}
+svg:not(.ladder) text{font-size:14px}
 }
 @media print{
 @page{margin:14mm}
@@ -122,6 +133,7 @@ html{font-size:11pt}
 body{max-width:none;padding:0}
 .skip{display:none}
 .scroll{overflow:visible}
+.ladder{max-width:100%}
 .scroll table{font-size:.75rem}
 .scroll .text{min-width:0}
 .sides{flex-wrap:nowrap;gap:0 1.5rem}

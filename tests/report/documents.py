@@ -17,6 +17,7 @@ from fatektool.report.series import Place, series_report
 from fatektool.report.snapshot import snapshot_report
 from tests.cli.running import check
 from tests.program.samples import changed, program
+from tests.report.ladders import ladder_diff, listing
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -191,6 +192,8 @@ REPORTS: dict[str, Callable[[], str]] = {
     "snapshot": lambda: snapshot_report(snapshot(13)),
     "watch": lambda: series_report(series(), place(), ended="interrupted"),
     "series": lambda: series_report(series(5000, step_s=2, most_points=500), place("fatektool.snapshot/1")),
+    "listing": listing,
+    "ladder diff": ladder_diff,
     "nothing": lambda: series_report(Rounds(), place(), ended="no answer"),
 }
 """Every kind of report, by name, and how it is made."""

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-SHOWN = ("loopback", "dead line", "verify", "diff", "snapshot", "watch")
+SHOWN = ("loopback", "dead line", "verify", "diff", "snapshot", "watch", "listing", "ladder diff")
 
 pytestmark = pytest.mark.skipif(
     CHROMIUM is None and not os.environ.get("CI"), reason="there is no Chromium here; in CI there must be"
@@ -37,6 +37,15 @@ TABLE = """JSON.stringify([...document.querySelectorAll('tbody tr')]
 TEXT_COLOURS = """JSON.stringify([...document.querySelectorAll('h1,p,td,th,dt,dd,summary,a,mark,text')]
     .filter(each => !each.closest('.skip'))
     .map(each => getComputedStyle(each)[each.tagName == 'text' ? 'fill' : 'color']))"""
+WIDEST = """Math.max(...[...document.querySelectorAll('.ladder')]
+    .map(each => each.getBoundingClientRect().width))"""
+SIDES = """JSON.stringify([...document.querySelectorAll('.network .sides')].map(each =>
+    [...each.children].map(side => side.getBoundingClientRect()).map(box => [box.left, box.top])))"""
+MARKS = """JSON.stringify(Object.fromEntries(['added', 'removed'].map(name => {
+    const mark = document.querySelector(`g.${name}`)
+    const drawn = getComputedStyle(mark.querySelector('rect'))
+    return [name, [drawn.stroke, drawn.strokeDasharray, mark.querySelector('text').textContent]]
+})))"""
 OUTSIDE = """JSON.stringify([...document.querySelectorAll('svg')].flatMap(image => {
     const box = image.getBoundingClientRect()
     return [...image.querySelectorAll('text,path,rect')].map(each => each.getBoundingClientRect())
@@ -114,6 +123,36 @@ def test_paper_is_light_and_nothing_is_cut(page: Page, folder: Path) -> None:
     sheets = page.paper()
     assert sheets.startswith(b"%PDF-")
     assert 2 <= len(re.findall(rb"/Type\s*/Page\b", sheets)) <= 3
+
+
+def test_a_ladder_keeps_its_size_and_fits_the_paper(page: Page, folder: Path) -> None:
+    """On a phone it scrolls in its own frame; both sides of a comparison are in view on a wide screen."""
+    page.show(width=400)
+    page.open(folder / "listing.html")
+    on_a_phone = page.value(WIDEST)
+    assert on_a_phone > 400
+    page.show()
+    assert page.value(WIDEST) == on_a_phone
+    page.show(width=720, media="print")
+    assert page.value(WIDEST) <= 720
+    page.show()
+    page.open(folder / "ladder diff.html")
+    places = asked(page, SIDES)
+    assert len(places) == 3
+    for (a_left, a_top), (b_left, b_top) in places:
+        assert a_left < b_left
+        assert a_top == b_top
+
+
+def test_what_was_added_or_removed_is_seen_without_its_colour(page: Page, folder: Path) -> None:
+    for dark in (False, True):
+        page.show(dark=dark)
+        page.open(folder / "ladder diff.html")
+        scheme = style.DARK if dark else style.LIGHT
+        assert asked(page, MARKS) == {
+            "added": [rgb(scheme["good"]), "none", "+"],
+            "removed": [rgb(scheme["bad"]), "5px, 3px", "\N{MINUS SIGN}"],
+        }
 
 
 def test_a_list_opens_without_a_script(page: Page, folder: Path) -> None:

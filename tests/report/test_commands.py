@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from fatektool.report.networks import MOST_DRAWN
 from fatektool.report.program import MOST_PAGES
 from fatektool.report.rounds import MOST_GAPS, MOST_POINTS
 from fatektool.report.series import MOST_CHARTS, MOST_DISCRETES
 from fatektool.report.snapshot import MOST_ROWS
 from tests.cli.running import NEW, OLD, Cli, Done, Press, check, one_line, process, started
 from tests.plant import cut_after, spied
+from tests.project.files import IMAGE, project_file
 from tests.report.tree import Node, facts, parse, rows, texts
 from tests.root import ROOT
 
@@ -264,11 +266,19 @@ def test_a_target_that_cannot_be_printed(place: Path) -> None:
 def test_the_commands_of_the_documentation(press: Press, cli: Cli) -> None:
     shutil.copy(press.old, press.folder / "press.json")
     shutil.copy(press.new, press.folder / "monday.json")
+    project_file("press.pdw", IMAGE)
     text = (ROOT / "docs" / "reports.md").read_text(encoding="utf-8")
     lines = re.findall(r"^\$ fatektool (.*)$", text, re.MULTILINE)
-    assert {line.split()[0] for line in lines} == {"verify", "diff", "loopback", "watch", "snapshot"}
+    assert {line.split()[0] for line in lines} == {
+        "verify",
+        "diff",
+        "listing",
+        "loopback",
+        "watch",
+        "snapshot",
+    }
     for line in lines:
         assert cli(*line.split()).code == (1 if line.startswith("diff") else 0), line
         assert report_of(press.folder, line.split()[-1]).first("h1").text
-    for number in (MOST_PAGES, MOST_POINTS, MOST_ROWS, MOST_CHARTS, MOST_DISCRETES, MOST_GAPS):
+    for number in (MOST_PAGES, MOST_POINTS, MOST_ROWS, MOST_CHARTS, MOST_DISCRETES, MOST_GAPS, MOST_DRAWN):
         assert f" {number} " in text.replace("|", " |")

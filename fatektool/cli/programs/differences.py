@@ -48,7 +48,9 @@ def show_differences(
     if report is not None and found.b is not None:
         from fatektool.report.program import diff_report
 
-        write_report(report, diff_report(document, found.a, found.b, time=utc()))
+        networks = found.networks or ()
+        html = diff_report(document, found.a, found.b, time=utc(), changes=networks, comments=comments)
+        write_report(report, html)
     voice.show(document, program_lines(found, same, a[0], b[0], comments))
     return 0 if found.same else 1
 

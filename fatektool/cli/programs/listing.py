@@ -65,6 +65,6 @@ def listing_command(
     if report is not None:
         from fatektool.report.listing import listing_report
 
-        write_report(report, listing_report(document, time=utc()))
+        write_report(report, listing_report(document, networks, time=utc()))
     lines = ladder_lines(networks, texts) if ladder else listing_lines(networks, in_lines, words=words)
     voice.show(document, lines)

@@ -12,7 +12,7 @@ from fatektool.project.comments import text_in
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from fatektool.ladder.drawing.text.canvas import Pen
+    from fatektool.ladder.drawing.text.pen import Pen
     from fatektool.ladder.networks import Network
     from fatektool.project.comments import Comments
 
@@ -47,9 +47,9 @@ def _instruction_lines(network: Network, comments: Mapping[str, str], *, words: 
 def ladder_lines(networks: Sequence[Network], comments: Comments) -> Iterator[str]:
     """The networks drawn, as wide as the terminal; what cannot be drawn as instructions, with the reason."""
     from fatektool.ladder.circuit.reading import NoCircuit, circuit_of
-    from fatektool.ladder.drawing.text.canvas import Pen
     from fatektool.ladder.drawing.text.draw import NARROWEST, draw
     from fatektool.ladder.drawing.text.letters import Letters
+    from fatektool.ladder.drawing.text.pen import Pen
 
     columns = min(max(shutil.get_terminal_size().columns, NARROWEST), _WIDEST)
     pen = Pen(Letters(sys.stdout.encoding))

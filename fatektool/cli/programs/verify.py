@@ -59,6 +59,6 @@ def verify_command(
     if report is not None:
         from fatektool.report.program import verify_report
 
-        write_report(report, verify_report(document, found.a))
+        write_report(report, verify_report(document, found.a, found.networks or (), texts))
     voice.show(document, program_lines(found, same, "file", "PLC", texts))
     return 0 if found.same else 1

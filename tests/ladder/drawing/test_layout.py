@@ -15,9 +15,9 @@ from fatektool.ladder.circuit.writing import instructions_of
 from fatektool.ladder.drawing.layout import aligned, plan_of
 from fatektool.ladder.drawing.plan import RAIL, Net, Plan
 from fatektool.ladder.drawing.text.bands import cuts_of
-from fatektool.ladder.drawing.text.canvas import Pen
 from fatektool.ladder.drawing.text.cells import Writer
 from fatektool.ladder.drawing.text.letters import Letters
+from fatektool.ladder.drawing.text.pen import Pen
 from fatektool.ladder.drawing.text.sheet import Sheet
 from tests.ladder.circuits import circuits, coded
 from tests.ladder.drawing.wiring import RAIL_END, by_characters, by_plan

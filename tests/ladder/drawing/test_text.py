@@ -15,9 +15,9 @@ from fatektool.ladder.circuit.nodes import Circuit
 from fatektool.ladder.circuit.reading import LARGEST, circuit_of
 from fatektool.ladder.drawing.layout import plan_of
 from fatektool.ladder.drawing.signs import frame_of, sign_of
-from fatektool.ladder.drawing.text.canvas import Pen
 from fatektool.ladder.drawing.text.draw import draw
 from fatektool.ladder.drawing.text.letters import Letters, width_of, wrapped
+from fatektool.ladder.drawing.text.pen import Pen
 from tests.ladder.circuits import network
 from tests.ladder.drawing.test_layout import CIRCUITS
 

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, TypeAlias
 from fatektool.ladder.drawing.plan import RAIL, BoxCell, Pin, Plan
 from fatektool.ladder.drawing.text.band import Band
 from fatektool.ladder.drawing.text.bands import MARK, Cut
-from fatektool.ladder.drawing.text.canvas import _BOX, DOWN, LEFT, RIGHT, UP, Pen
+from fatektool.ladder.drawing.text.canvas import Canvas
 from fatektool.ladder.drawing.text.letters import Letters, width_of
+from fatektool.ladder.drawing.text.pen import _BOX, DOWN, LEFT, RIGHT, UP, Pen
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterable, Iterator
@@ -84,8 +85,9 @@ def by_characters(sheet: Sheet, cuts: list[tuple[Cut, Cut]]) -> set[frozenset[Te
     groups, number = _Groups(), 1
     terminals: list[tuple[Terminal, Hashable]] = []
     for count, (begin, end) in enumerate(cuts):
-        band = Band(sheet, begin, end, number, Pen(Letters()))
-        lines = [_columns(line) for line in band.lines()]
+        band, canvas = Band(sheet, begin, end, number, "►"), Canvas(Pen(Letters()))
+        band.draw_on(canvas)
+        lines = [_columns(line) for line in canvas.lines()]
         inside = set(_covered(band))
         for line, characters in enumerate(lines):
             for column, character in enumerate(characters):

@@ -1,4 +1,4 @@
-"""One band of a sheet in lines of text.
+"""One band of a sheet: where its wires, signs, boxes and texts are, in lines and columns of text.
 
 ::
 
@@ -15,13 +15,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fatektool.ladder.drawing.text.bands import MARK, Cut
-from fatektool.ladder.drawing.text.canvas import Canvas, Pen
-from fatektool.ladder.drawing.text.letters import centred, width_of
+from fatektool.ladder.drawing.text.letters import width_of
+from fatektool.ladder.drawing.text.surface import Anchor
 
 if TYPE_CHECKING:
     from fatektool.ladder.drawing.plan import BoxCell, Cell, Link
     from fatektool.ladder.drawing.text.cells import BoxText, SignText
     from fatektool.ladder.drawing.text.sheet import Sheet
+    from fatektool.ladder.drawing.text.surface import Surface
 
 
 class Band:
@@ -32,11 +33,11 @@ class Band:
         begin: the first cut.
         end: the second.
         number: of the first wire that is cut at the first.
-        pen: what it is drawn with.
+        onward: the mark of a wire that goes on below.
     """
 
-    def __init__(self, sheet: Sheet, begin: Cut, end: Cut, number: int, pen: Pen) -> None:
-        self._begin, self._end, self._number, self._pen = begin, end, number, pen
+    def __init__(self, sheet: Sheet, begin: Cut, end: Cut, number: int, onward: str) -> None:
+        self._begin, self._end, self._number, self._onward = begin, end, number, onward
         self._columns = range(begin.column, end.column)
         self._signs = [(cell, text) for cell, text in sheet.signs if cell.column in self._columns]
         self._boxes = [(box, text) for box, text in sheet.boxes if box.column in self._columns]
@@ -55,19 +56,22 @@ class Band:
         self._line_of: dict[int, int] = {}
         self._height = self._lay_rows()
 
-    def lines(self) -> list[str]:
-        """What is drawn."""
-        canvas = Canvas(self._pen)
+    @property
+    def lines(self) -> int:
+        """How many lines it takes."""
+        return self._height
+
+    def draw_on(self, surface: Surface) -> None:
+        """Draw it."""
         for row, first, end in self._wires:
-            canvas.across(self._line_of[row], self._at[first], self._at[end])
+            surface.across(self._line_of[row], self._at[first], self._at[end])
         for link in self._links:
-            canvas.down(self._at[link.column], self._line_of[link.first], self._line_of[link.last])
+            surface.down(self._at[link.column], self._line_of[link.first], self._line_of[link.last])
         for cell, sign in self._signs:
-            self._draw_sign(canvas, cell, sign)
+            self._draw_sign(surface, cell, sign)
         for box, text in self._boxes:
-            self._draw_box(canvas, box, text)
-        self._draw_ends(canvas)
-        return canvas.lines()
+            self._draw_box(surface, box, text)
+        self._draw_ends(surface)
 
     def _has(self, link: Link) -> bool:
         if link.column == self._end.column:
@@ -101,50 +105,46 @@ class Band:
         last = self._line_of[box.row + box.rows - 1]
         return max(last + 1, self._line_of[box.row] + len(text.settings))
 
-    def _draw_sign(self, canvas: Canvas, cell: Cell, sign: SignText) -> None:
+    def _draw_sign(self, surface: Surface, cell: Cell, sign: SignText) -> None:
         line, left, right = self._line_of[cell.row], self._at[cell.column], self._at[cell.column + 1]
-        room = right - left - 1
-        shown = centred(sign.sign, room)
-        start = left + 1 + len(shown) - len(shown.lstrip()) if sign.sign.strip() else left + 1
-        canvas.across(line, left, start if cell.ends else right)
-        middle = left + 1 + (room - width_of(sign.sign)) // 2
-        canvas.write(line, middle, sign.sign)
-        if sign.name:
-            canvas.write(line - 1, left + 1 + (room - width_of(sign.name)) // 2, sign.name)
-        for number, text in enumerate(sign.below, 1):
-            canvas.write(line + number, left + 1 + (room - width_of(text)) // 2, text)
+        first = left + 1 + (right - left - 1 - width_of(sign.sign)) // 2
+        last = first + width_of(sign.sign) - 1
+        surface.across(line, left, first)
+        if not cell.ends:
+            surface.across(line, last, right)
+        surface.sign(line, first, sign, cell.leaf.number)
+        for place, text in enumerate((sign.name, "", *sign.below), line - 1):
+            if text:
+                middle = left + 1 + (right - left - 1 - width_of(text)) // 2
+                surface.write(place, middle, text, Anchor.MIDDLE, quiet=place > line)
 
-    def _draw_box(self, canvas: Canvas, box: BoxCell, text: BoxText) -> None:
+    def _draw_box(self, surface: Surface, box: BoxCell, text: BoxText) -> None:
         left, right = self._at[box.column] + 1, self._at[box.column + 1] - 1
-        top, foot = self._line_of[box.row] - 1, self._foot(box, text)
-        for line in (top, foot):
-            canvas.across(line, left, right)
-        for column in (left, right):
-            canvas.down(column, top, foot)
-        canvas.write(top, left + 2, text.title)
-        for number, setting in enumerate(text.settings):
-            canvas.write(top + 1 + number, left + 2 + text.before, setting)
+        top = self._line_of[box.row] - 1
+        surface.frame((top, self._foot(box, text)), (left, right), text.title, box.leaf.number)
+        for line, setting in enumerate(text.settings, top + 1):
+            surface.write(line, left + 2 + text.before, setting)
         for pin, name in zip(box.inputs, text.inputs, strict=True):
-            canvas.write(self._line_of[pin.row], left + 1, name)
+            surface.write(self._line_of[pin.row], left + 1, name)
             if pin.net is not None:
-                canvas.across(self._line_of[pin.row], left - 1, left)
+                surface.across(self._line_of[pin.row], left - 1, left)
         for pin, name in zip(box.outputs, text.outputs, strict=True):
-            canvas.write(self._line_of[pin.row], right - width_of(name), name)
+            surface.write(self._line_of[pin.row], right - width_of(name), name, Anchor.END)
             if pin.net is not None:
-                canvas.across(self._line_of[pin.row], right, right + 1)
+                surface.across(self._line_of[pin.row], right, right + 1)
 
-    def _draw_ends(self, canvas: Canvas) -> None:
+    def _draw_ends(self, surface: Surface) -> None:
         """The rail, and the marks of wires that were cut."""
         if self._begin.column == 0:
-            canvas.rail(self._height)
+            surface.rail(self._height)
             for row in self._rail:
                 if row in self._line_of:
-                    canvas.across(self._line_of[row], 0, 1)
+                    surface.across(self._line_of[row], 0, 1)
         for number, row in enumerate(self._begin.rows, self._number):
-            mark = f"{number:>{MARK - 2}}{self._pen.onward}"
-            canvas.across(self._line_of[row], MARK - 1, MARK)
-            canvas.write(self._line_of[row], MARK - 1 - len(mark), mark)
+            mark = f"{number:>{MARK - 2}}{self._onward}"
+            surface.across(self._line_of[row], MARK - 1, MARK)
+            surface.write(self._line_of[row], MARK - 1 - len(mark), mark, Anchor.END)
         after = self._at[self._end.column]
         for number, row in enumerate(self._end.rows, self._number + len(self._begin.rows)):
-            canvas.across(self._line_of[row], after, after + 1)
-            canvas.write(self._line_of[row], after + 1, f"{self._pen.onward}{number}")
+            surface.across(self._line_of[row], after, after + 1)
+            surface.write(self._line_of[row], after + 1, f"{self._onward}{number}")

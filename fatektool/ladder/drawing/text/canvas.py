@@ -2,49 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import TYPE_CHECKING
 
-from fatektool.ladder.drawing.text.letters import Letters, pieces
+from fatektool.ladder.drawing.text.letters import pieces
+from fatektool.ladder.drawing.text.pen import DOWN, LEFT, RIGHT, UP
+from fatektool.ladder.drawing.text.surface import Anchor
 
-LEFT, RIGHT, UP, DOWN = 1, 2, 4, 8
-_BOX: Final = {
-    LEFT: "─",
-    RIGHT: "─",
-    UP: "│",
-    DOWN: "│",
-    LEFT | RIGHT: "─",
-    UP | DOWN: "│",
-    RIGHT | DOWN: "┌",
-    LEFT | DOWN: "┐",
-    RIGHT | UP: "└",
-    LEFT | UP: "┘",
-    LEFT | RIGHT | DOWN: "┬",
-    LEFT | RIGHT | UP: "┴",
-    UP | DOWN | RIGHT: "├",
-    UP | DOWN | LEFT: "┤",
-    LEFT | RIGHT | UP | DOWN: "┼",
-}
-_ASCII: Final = dict.fromkeys((LEFT, RIGHT, LEFT | RIGHT), "-") | dict.fromkeys((UP, DOWN, UP | DOWN), "|")
-
-
-class Pen:
-    """The characters that lines and signs are made of: box characters, or ASCII where there are none.
-
-    Args:
-        letters: what can be written.
-    """
-
-    def __init__(self, letters: Letters) -> None:
-        self.letters = letters
-        self._boxes = letters.has("".join(set(_BOX.values())))
-        arrows = letters.has("↑↓►")
-        self.contact = ("┤", "├") if self._boxes else ("]", "[")
-        self.rising, self.falling = ("↑", "↓") if arrows else ("^", "v")
-        self.onward = "►" if arrows else ">"
-
-    def line(self, ways: int) -> str:
-        """The character of a line that goes these ways."""
-        return _BOX[ways] if self._boxes else _ASCII.get(ways, "+")
+if TYPE_CHECKING:
+    from fatektool.ladder.drawing.text.cells import SignText
+    from fatektool.ladder.drawing.text.pen import Pen
 
 
 class Canvas:
@@ -74,7 +40,33 @@ class Canvas:
         for line in range(lines):
             self._join(line, 0, UP | DOWN)
 
-    def write(self, line: int, column: int, text: str) -> None:
+    def sign(self, line: int, column: int, sign: SignText, number: int) -> None:  # noqa: ARG002
+        """An instruction's sign, on top of its wire."""
+        self.write(line, column, sign.sign)
+
+    def frame(
+        self,
+        lines: tuple[int, int],
+        columns: tuple[int, int],
+        title: str,
+        number: int,  # noqa: ARG002
+    ) -> None:
+        """The edges of an instruction's box, its title in the upper one."""
+        for line in lines:
+            self.across(line, *columns)
+        for column in columns:
+            self.down(column, *lines)
+        self.write(lines[0], columns[0] + 2, title)
+
+    def write(
+        self,
+        line: int,
+        column: int,
+        text: str,
+        anchor: Anchor = Anchor.START,  # noqa: ARG002  # each character has its place
+        *,
+        quiet: bool = False,  # noqa: ARG002
+    ) -> None:
         """Text, on top of what is there."""
         for piece, width in pieces(text):
             self._texts[line, column] = piece

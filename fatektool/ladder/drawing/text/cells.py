@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from fatektool.ladder.circuit.nodes import Leaf
     from fatektool.ladder.drawing.plan import BoxCell
-    from fatektool.ladder.drawing.text.canvas import Pen
+    from fatektool.ladder.drawing.text.pen import Pen
 
 _COMMENT: Final = 9
 _MOST_LINES: Final = 6
@@ -24,12 +24,14 @@ class SignText:
     """A sign in characters.
 
     Attributes:
+        look: what it is.
         name: above it.
         sign: itself.
         below: the comments.
         room: the columns that it needs.
     """
 
+    look: Look
     name: str
     sign: str
     below: tuple[str, ...]
@@ -85,7 +87,7 @@ class Writer:
         }[sign.look]
         room = max(width_of(drawn) + 4, width_of(sign.name))
         below = wrapped(self._remark(sign.elements), max(room, _COMMENT))[:_MOST_LINES]
-        return SignText(sign.name, drawn, tuple(below), max([room, *map(width_of, below)]))
+        return SignText(sign.look, sign.name, drawn, tuple(below), max([room, *map(width_of, below)]))
 
     def box(self, box: BoxCell) -> BoxText:
         """A box and what is in it."""

@@ -99,14 +99,3 @@ def _parts(word: str, columns: int) -> Iterator[str]:
         held += piece
         used += width
     yield held
-
-
-def fitted(text: str, columns: int) -> str:
-    """A text that takes so many columns, filled up with spaces; it must not take more."""
-    return text + " " * (columns - width_of(text))
-
-
-def centred(text: str, columns: int) -> str:
-    """A text in the middle of so many columns, the odd one to its right."""
-    left = (columns - width_of(text)) // 2
-    return fitted(" " * left + text, columns)
