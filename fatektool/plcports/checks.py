@@ -6,11 +6,11 @@ FBs link paper: the ranges are at the operand SR of each mode, the codes at its 
 
 Where the paper is silent:
 
-* It gives no code for a wrong station: such a fault has none. Reading from station 0 gets A, as nobody
+* It gives no code for a wrong station: such a fault has none. Reading from station 0 gets A, as no PLC
   answers a broadcast.
 * CLINK's code 3 is said to be for commands 'greater than 2'; command 0 is no command either (M-BUS says so),
   so it is 3 too.
-* Code 5 is taken to be for the whole stretch: the data must lie within the references that the paper lists.
+* Code 5 is taken to be for the whole stretch: the data must be within the references that the paper lists.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def _command(number: int, command: int, known: Mapping[int, str]) -> Iterator[Fa
 
 def _broadcast_read(number: int, row: Transaction) -> Iterator[Fault]:
     if row.station == 0 and row.command == READ:
-        yield Fault(number, 0xA, "station 0 is all of them, and nobody answers that: it cannot be read from")
+        yield Fault(number, 0xA, "station 0 is all of them, and none answers: it cannot be read from")
 
 
 def _length(number: int, length: int, most: int) -> Iterator[Fault]:

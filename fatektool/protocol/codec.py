@@ -1,9 +1,9 @@
 """What a protocol is to the rest of the package: requests to bytes, bytes to frames, frames to answers.
 
-A client holds one ``Codec`` and knows nothing else of the protocol it speaks, so that another
+A client holds one ``Codec`` and knows nothing else of the protocol, so that another
 protocol is another file.
 
-Most answers do not name their question. So a codec says how an answer that came late is told from the one
+Most answers do not name their request. So a codec says how an answer that came late is told from the one
 that is waited for: by a number that it repeats (``numbers``), or, behind a *fence*, a request whose answer
 nothing that was asked before could have.
 """
@@ -30,7 +30,7 @@ class Frame(NamedTuple):
     Attributes:
         station: 0 to 255; who is asked or who answers.
         command: the command's code, known or not.
-        data: what stands between command and checksum, error character included.
+        data: what is between command and checksum, error character included.
         raw: the frame as it came over the wire.
         number: of the request, where answers repeat it; else 0.
     """
@@ -58,7 +58,7 @@ class Decoder(Protocol):
     def expect_no_more(self) -> bool:
         """The time for what was fed is over; True if ``next_frame`` may find something in it now.
 
-        A frame that began and has not ended is none then, and another may stand behind its beginning.
+        A frame that began and has not ended is none then, and another may follow its beginning.
         """
 
     def clear(self) -> int:
@@ -78,7 +78,7 @@ class Codec(Protocol):
 
     @property
     def loopback_alphabet(self) -> bytes:
-        """The bytes that a loopback (4E) may carry over any line that this protocol is spoken on."""
+        """The bytes that a loopback (4E) may carry over any line that this protocol is used on."""
 
     @property
     def data_bits(self) -> int | None:
@@ -157,7 +157,7 @@ class Codec(Protocol):
         Args:
             station: 0 for all of them.
             command: 0 to 255; in Modbus the function.
-            data: what stands between command and checksum.
+            data: what is between command and checksum.
             number: 0 to ``numbers`` less 1.
             answer: True for an answer, where its frame differs from a request's.
 
@@ -176,7 +176,7 @@ class Codec(Protocol):
         """
 
     def checksum(self, data: bytes) -> bytes:
-        """The checksum of what it covers, as it stands on the wire.
+        """The checksum of what it covers, as it is sent.
 
         Raises:
             UsageError: frames of this protocol have none.
@@ -186,7 +186,7 @@ class Codec(Protocol):
         """What an error code above 0 means, in words."""
 
     def request_bytes(self, request: Request[A]) -> int:
-        """Length in bytes of the frame that asks this, wherever its elements lie."""
+        """Length in bytes of the frame that asks this, whatever its elements' addresses."""
 
     def answer_bytes(self, request: Request[A]) -> int:
         """Length in bytes of the frame that answers this request; the likely one if it varies."""

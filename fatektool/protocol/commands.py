@@ -264,7 +264,7 @@ class WritePage(Request[None]):
 
 @dataclass(frozen=True, slots=True)
 class ReadDetailedStatus(Request["DetailedStatus | RawStatus"]):
-    """53: 64 status bytes, the ladder size among them; raw bytes where nobody says what they mean."""
+    """53: 64 status bytes, the ladder size among them; raw bytes where no paper says what they mean."""
 
     command: ClassVar[Command] = Command.DETAILED_STATUS
 

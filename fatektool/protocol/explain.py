@@ -1,4 +1,4 @@
-"""A frame explained, field by field, for people: ``decode`` and whoever reads a trace."""
+"""A frame explained, field by field, for people: ``decode``, and who reads a trace."""
 
 from __future__ import annotations
 

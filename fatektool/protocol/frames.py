@@ -1,4 +1,4 @@
-"""Frames, checksums and error texts by the name of a protocol, for whoever sends and reads bytes himself.
+"""Frames, checksums and error texts by the name of a protocol, for programs with a line of their own.
 
 ::
 
@@ -65,7 +65,7 @@ def raw_frame(
 
     Args:
         command: the command's code, 0 to 255; in Modbus the function.
-        data: what stands between command and checksum; of an answer with its error code.
+        data: what is between command and checksum; of an answer with its error code.
         station: 0 for all of them.
         protocol: a name of ``--protocol``.
         answer: True for an answer, which M-series frames say.
@@ -102,7 +102,7 @@ def error_frame(
 
 
 def checksum(data: bytes, protocol: str = "facon") -> bytes:
-    """The checksum of some bytes, as it stands on the wire.
+    """The checksum of some bytes, as it is sent.
 
     Args:
         data: what it covers: see the table above. FACON's begins with STX (02).

@@ -7,7 +7,7 @@
                  long the frame is
 
 As little as possible is dropped, so a good frame behind a bad one is found. Where a byte begins a frame
-wherever it comes, a second one before the end begins another, and what stood before it is dropped. Where the
+wherever it comes, a second one before the end begins another, and what was before it is dropped. Where the
 length alone says where a frame ends, something is a frame if all that can be known of its beginning holds. If
 it turns out to be none, it is dropped up to what could be the next beginning, even one within what its length
 had covered. A frame that has not come whole when its time is over is dropped in the same way
@@ -67,7 +67,7 @@ class Resync(ABC):
 
 
 class Delimited(Resync):
-    """Frames from a byte that never stands inside a frame to an end that does not either.
+    """Frames from a byte that is never inside a frame to an end that is not either.
 
     Attributes:
         begin: the byte that begins a frame.
@@ -80,7 +80,7 @@ class Delimited(Resync):
     longest: ClassVar[int]
 
     def expect_no_more(self) -> bool:
-        """False: behind a frame that has not ended nothing can stand, as it would have begun another."""
+        """False: nothing can follow a frame that has not ended, as it would have begun another."""
         return False
 
     def next_frame(self) -> Frame | None:
@@ -120,7 +120,7 @@ class Measured(Resync):
     """Frames that say at their beginning how long they are."""
 
     def expect_no_more(self) -> bool:
-        """Let go of a frame that began and does not end, and look at what stands behind its beginning."""
+        """Drop a frame that began and does not end; look at what follows its beginning."""
         self._all_came = bool(self._buffer)
         return self._all_came
 

@@ -11,7 +11,7 @@
 16-bit values come high byte first (FACON paper, section 4.2, commands 40 and 53). A code that no
 paper names is shown as a code: real units answer with such.
 
-The M-series paper (section 2.5.1) has the same byte 1 in 40, but for bit 3, which tells of a memory card
+The M-series paper (section 2.5.1) has the same byte 1 in 40, but for bit 3, which is for a memory card
 instead of a ROM pack; it reserves bytes 2 and 3. It lists 53 without a layout: an answer of 64 bytes is
 assumed to be FACON's, any other is kept as it is.
 """
@@ -185,6 +185,6 @@ class DetailedStatus:
 
 @dataclass(frozen=True, slots=True)
 class RawStatus:
-    """An answer to 53 of which nobody says what it means."""
+    """An answer to 53 in a layout that no paper describes."""
 
     raw: bytes

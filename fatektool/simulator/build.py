@@ -41,7 +41,7 @@ class Simulation:
 
     Args:
         plcs: the PLCs by station.
-        make_slave: a new slave of the protocol to speak.
+        make_slave: a new slave of the protocol.
         faults: what goes wrong; None for nothing.
         state: where the memory is kept; None for nowhere.
         baud: bits a second; None for a wire that takes no time.

@@ -30,7 +30,7 @@ class SymbolKind:
 
     Args:
         symbol: as written in a request, ``DWM``.
-        area: where its elements lie, ``M``.
+        area: of its elements, ``M``.
         bits: the width of one element: 1, 16 or 32.
         step: how much of the area one element takes.
         packed: True for words made of discretes.

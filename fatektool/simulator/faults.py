@@ -132,7 +132,7 @@ class Faults:
         seed: the same seed and the same requests give the same faults.
         slow_s: the delay of a slow answer.
 
-    ``counts`` tells how often each kind struck.
+    ``counts`` has how often each kind struck.
     """
 
     def __init__(self, plan: FaultPlan, *, seed: int = 0, slow_s: float = DEFAULT_SLOW_S) -> None:
@@ -152,7 +152,7 @@ class Faults:
         return self._strikes("echo")
 
     def answer(self, slave: Slave, request: RequestFrame) -> bytes | None:
-        """Have ``request`` executed, or not: the power may go, a write may be a lie."""
+        """Have ``request`` executed, or not: the power may go, a write may be acknowledged and not done."""
         if request.kind in {RequestKind.OTHER, RequestKind.LOOPBACK}:
             return slave.answer(request)
         plc = addressed(slave.plcs, request.station)
@@ -195,9 +195,9 @@ class Faults:
         return SpoiledAnswer(copies, delay_s, late=self._strikes("late"))
 
     def garbage(self, slave: Slave, request: RequestFrame) -> bytes | None:
-        """What comes back for a request that nobody could understand; None if it was understood.
+        """What comes back for a request that no PLC could understand; None if it was understood.
 
-        It is empty for a broadcast, which nobody answers, understood or not.
+        It is empty for a broadcast, which no PLC answers, understood or not.
         """
         broadcast = request.station == BROADCAST
         here = broadcast or addressed(slave.plcs, request.station) is not None

@@ -99,7 +99,7 @@ class SimulatedLine:
         return due
 
     def datagram(self, data: bytes, now: float) -> list[tuple[float, bytes]]:
-        """Like ``receive`` for a medium in which every message stands by itself."""
+        """Like ``receive`` for a medium in which every message is complete."""
         self._slave.reset()
         due = self.receive(data, now)
         self._slave.reset()

@@ -13,7 +13,7 @@ Only a loopback is no question of its own: a client that sends one with fresh co
 before. So the loopbacks to a station are one sequence, and in what was heard the old content gives way to the
 new; when the sequence is used up, a station that answered any goes on to answer them.
 
-No protocol is spoken of here: a ``Slave`` cuts the requests, and says how a loopback is answered.
+Nothing here depends on the protocol: a ``Slave`` cuts the requests, and says how a loopback is answered.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ class Replay:
         records: the recording, in order.
         protocol: a name of ``SLAVES``.
         speed: 1 for the recorded delays, 10 for a tenth of them, 0 for none.
-        on_unknown: is told each request that was not recorded.
+        on_unknown: is called with each request that was not recorded.
 
     Raises:
         DataError: there is no request in it.
@@ -131,7 +131,7 @@ class Replay:
             # What a two-wire line echoes is the request itself, which need not be what answers it.
             swaps = {exchange.request.raw: request.raw, self._echo(exchange.request): self._echo(request)}
             for old, new in swaps.items():
-                if old:  # nobody answers a broadcast
+                if old:  # no PLC answers a broadcast
                     heard = [(delay_s, data.replace(old, new)) for delay_s, data in heard]
         return [(delay_s * self._pace, data) for delay_s, data in heard]
 
@@ -185,7 +185,7 @@ class ReplayLine:
         return due
 
     def datagram(self, data: bytes, now: float) -> list[tuple[float, bytes]]:
-        """Like ``receive`` for a medium in which every message stands by itself."""
+        """Like ``receive`` for a medium in which every message is complete."""
         self._slave.reset()
         due = self.receive(data, now)
         self._slave.reset()
@@ -202,7 +202,7 @@ def _exchanges(
 ) -> list[_Exchange]:
     """The requests in a recording, each with what it heard.
 
-    A request may stand in several records, and several in one. What came before the first is left out: it
+    A request may be in several records, and several in one. What came before the first is left out: it
     answers nothing.
     """
     slave = make_slave({})

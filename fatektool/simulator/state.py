@@ -14,7 +14,7 @@ A JSON document; what is zero, off, enabled or an empty page (all FF) is left ou
 
 A file is taken as a whole or refused with one line that names it and the fault. It is written beside
 its place and renamed into it, so that a process killed at any moment leaves either the state before or
-after. It is not synced to the disk: it stands for a PLC's memory, not for somebody's only backup, and a
+after. It is not synced to the disk: it is a PLC's memory in a test, nobody's only backup, and a
 restore writes it some two hundred times.
 """
 
@@ -103,7 +103,7 @@ class StateFile:
 
 
 def _private(path: str, flags: int) -> int:
-    """A program lies in it: for its owner and the group, as a backup is."""
+    """A program may be in it: for its owner and the group, as a backup is."""
     return os.open(path, flags, 0o640)
 
 

@@ -323,7 +323,7 @@ def test_refusals(code: str, meaning: str) -> None:
 def test_broadcast() -> None:
     explanation = one(FACON.encode(0, RunStop(run=False)), FrameRole.REQUEST)
     assert explanation.station == 0
-    assert explanation.fields[1].meaning == "all (broadcast), nobody answers"
+    assert explanation.fields[1].meaning == "all (broadcast), no PLC answers"
 
 
 def test_station_255() -> None:

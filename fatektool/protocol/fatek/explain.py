@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 _SAYS_LITTLE: Final = "data that no paper describes"
 _STATIONS: Final = {
-    0x00: "all (broadcast), nobody answers",
+    0x00: "all (broadcast), no PLC answers",
     0xFF: "255, any PLC, or an Ethernet module",
 }
 _PIECE: Final = 1 << 15

@@ -4,7 +4,7 @@
 
     : · station and PDU in hex digits · LRC(2 hex digits) · CR LF
 
-As STX in FACON, ``:`` never stands inside a frame, so a second one begins a new frame.
+As STX in FACON, ``:`` is never inside a frame, so a second one begins a new frame.
 """
 
 from __future__ import annotations

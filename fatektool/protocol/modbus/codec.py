@@ -156,7 +156,7 @@ class ModbusCodec:
         return self.framing.size(modbus_sizes.answer_size(request))
 
     def neighbourhood(self, element: Element, *, writes: bool) -> int:
-        """The stretch of the map that an element lies in."""
+        """The stretch of the map that an element is in."""
         return self.map.stretch_of(element, writes=writes)
 
     def most(self, symbol: str, *, writes: bool) -> int:

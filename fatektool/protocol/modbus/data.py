@@ -6,7 +6,7 @@
     WriteDiscretes    0F, or 05 for one            ControlDiscrete   05, set and reset only
     WriteRegisters    10, or 06 for one; of words of discretes 0F
 
-Of 32-bit counters a run is read over those between, as ``modbus_sizes`` tells.
+Of 32-bit counters a run is read over those between, see ``sizes``.
 """
 
 from __future__ import annotations

@@ -126,7 +126,7 @@ class ModbusExplainer:
         if station in self._framing.own_units:
             return f"{station}, the PLC at this address"
         if not station:
-            return "all (broadcast), nobody answers"
+            return "all (broadcast), no PLC answers"
         if station > LAST_STATION and self._framing.data_bits is not None:
             return f"{station}, reserved on serial lines"
         return f"{station}"

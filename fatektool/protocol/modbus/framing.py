@@ -40,7 +40,7 @@ class Framing:
         size: length of a frame around a PDU of so many bytes.
         before: the parts before the station.
         behind: the parts behind the PDU; none if there is no checksum.
-        checksum: of station and PDU, as it stands on the wire; None if there is none.
+        checksum: of station and PDU, as it is sent; None if there is none.
         octet: bytes on the wire for one of station and PDU.
         data_bits: that a serial line needs; None if it is not used there.
         tcp_port: unless one is named.

@@ -8,7 +8,7 @@
     4xxxx  holding registers   R0 1     R5000 5001   D0 6001   RT0 9001   RC0 9501   DRC200 9701
 
 A reference is written with five digits or six: 46012 and 406012 are the holding register at offset 6011, D11.
-On the wire stands the offset, one less than the reference and without its first digit.
+What is sent is the offset, one less than the reference and without its first digit.
 
 C200 to C255 have 32 bits, two registers each: DRC200 is 409701 and 409702. Which of them is the low word the
 paper does not say; here it is the first, as in every 32-bit register of these PLCs. C0 to C199 have 16 bits.
@@ -71,7 +71,7 @@ class Reference:
 
     Attributes:
         area: coil, discrete input, input register or holding register.
-        offset: as it stands on the wire, 0 to 65535.
+        offset: as it is sent, 0 to 65535.
     """
 
     area: ModbusArea
@@ -127,7 +127,7 @@ class MapStretch:
 
 @dataclass(frozen=True, slots=True)
 class ReferenceRun:
-    """Where an element, or a run of them, lies: so many references from one on."""
+    """Where an element, or a run of them, is: so many references from one on."""
 
     area: ModbusArea
     offset: int
@@ -178,7 +178,7 @@ class ModbusMap:
     stretches: tuple[MapStretch, ...]
 
     def place(self, first: Element, count: int = 1, *, writes: bool = False) -> ReferenceRun:
-        """Where a run of elements lies.
+        """Where a run of elements is.
 
         Args:
             first: the first of them.
@@ -197,7 +197,7 @@ class ModbusMap:
         return place
 
     def stretch_of(self, element: Element, *, writes: bool = False) -> int:
-        """The number of the stretch that an element lies in.
+        """The number of the stretch that an element is in.
 
         Raises:
             UsageError: it has no reference.
@@ -249,7 +249,7 @@ class ModbusMap:
             )
         return UsageError(
             f"{element} has no Modbus reference: the {self.name} map has {self.listed}",
-            hint="use --protocol facon on a port that speaks it" if self.name == STANDARD_NAME else None,
+            hint="use --protocol facon on a port that is set to it" if self.name == STANDARD_NAME else None,
             element=str(element),
         )
 

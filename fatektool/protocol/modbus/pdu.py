@@ -8,7 +8,7 @@
     function(1) · n(1) · n bytes                            01 02 03 04 answer
     function + 80(1) · exception(1)                         any answer
 
-pymodbus takes some PDUs that are not quite right: it drops what stands behind one, takes any value for 'on',
+pymodbus takes some PDUs that are not quite right: it drops what follows one, takes any value for 'on',
 does not look at a byte count. So what it has read is written again: only what comes out as it went in is
 believed.
 """
@@ -108,7 +108,7 @@ def parse_answer(data: bytes) -> Pdu:
 
 
 def crc_bytes(data: bytes) -> bytes:
-    """The CRC of RTU as it stands on the wire."""
+    """The CRC of RTU as it is sent."""
     return _rtu().compute_CRC(data).to_bytes(2, "big")
 
 

@@ -9,7 +9,7 @@
     DR DD DRT        2                       the same, in registers
     DRC              2, and 2 between them   31, 1
 
-Between one 32-bit counter and the one two on, as elements count them, lies another: a run of them is read
+Between one 32-bit counter and the one two on, as elements count them, is another: a run of them is read
 over those between, and written one at a time.
 """
 
@@ -144,7 +144,7 @@ def pdu_sizes(  # noqa: PLR0911  # a way out a form
 
     Args:
         buffer: the bytes.
-        at: where its function stands.
+        at: where its function is.
         end: behind what needs to be there to say more.
     """
     head = buffer[at:end]

@@ -12,7 +12,7 @@ class ServedLine(Protocol):
         """Take bytes of a stream; give what comes back, as (due time, bytes), times never decreasing."""
 
     def datagram(self, data: bytes, now: float) -> list[tuple[float, bytes]]:
-        """The same for a message that stands by itself."""
+        """The same for a message that is complete."""
 
 
 class Lines(Protocol):

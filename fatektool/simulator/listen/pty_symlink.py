@@ -6,7 +6,7 @@
     .plc.lock     locked as long as the simulator lives that made the link
 
 The system gives the number of a dead simulator's terminal to the next one that is opened, whoever
-opens it. So where a link points does not tell whether its maker lives; the lock does. A simulator that
+opens it. So where a link points does not show whether its maker is alive; the lock does. A simulator that
 was killed leaves both files, and the next one takes them over. Anything else of that name is kept.
 """
 

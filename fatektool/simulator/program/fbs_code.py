@@ -38,7 +38,7 @@ def one_word(operation: int, bit: int) -> int:
 
 
 def operand(value: int) -> int:
-    """A register's byte address or a constant, as it stands behind a function: its bytes exchanged."""
+    """A register's byte address or a constant, as it follows a function: its bytes exchanged."""
     return (value & 0xFF) << 8 | value >> 8
 
 

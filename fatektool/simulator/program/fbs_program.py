@@ -8,8 +8,8 @@
     byte A7FE    labels, downwards; none here
     byte A800    ROR registers
 
-A word has its low byte first; ``swapped`` exchanges them, as nobody knows in which order the pages come over
-the line. How much of it a real unit gives out by 4F is not known either.
+A word has its low byte first; ``swapped`` exchanges them, as it is not known in which order the pages come
+over the line. How much of it a real unit gives out by 4F is not known either.
 """
 
 from __future__ import annotations

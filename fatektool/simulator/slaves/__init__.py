@@ -1,1 +1,1 @@
-"""The protocols that a simulated PLC speaks. No code is shared with the client."""
+"""The protocols of a simulated PLC. No code is shared with the client."""

@@ -34,7 +34,7 @@ class RequestFrame(NamedTuple):
         end: how many bytes of the chunk just fed had crossed the wire with its last one.
         raw: the frame.
         station: 0 broadcast, 1 to 254.
-        command: the command as it stands in the frame.
+        command: the command as it is in the frame.
         data: what follows the command, without checksum.
         kind: what it does.
     """

@@ -53,7 +53,7 @@ def test_units_over_tcp(unit: int, words: str) -> None:
 
 def test_everyone_on_a_serial_line() -> None:
     (shown,) = new_explainer("modbus-ascii").explain(b":0006000C0001ED\r\n", FrameRole.REQUEST)
-    assert shown.fields[1].meaning == "all (broadcast), nobody answers"
+    assert shown.fields[1].meaning == "all (broadcast), no PLC answers"
 
 
 def test_an_exception_of_a_gateway() -> None:

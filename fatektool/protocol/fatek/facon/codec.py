@@ -6,7 +6,7 @@ r"""FACON ASCII frames, both ways the same form (FACON paper, section 2).
 
 The LRC is the sum of all bytes from STX to the last of the data, modulo 256, in two capital hex digits.
 
-STX never stands inside a frame, so a second one before ETX begins a new frame (``resync``). A frame that
+STX is never inside a frame, so a second one before ETX begins a new frame (``resync``). A frame that
 passes 508 bytes without ETX is dropped.
 """
 
@@ -51,7 +51,7 @@ def frame_bytes(station: int, command: int, data: bytes) -> bytes:
     """One frame.
 
     Args:
-        station: 0 to 255; 0 is everyone, and nobody answers; 255 is in no paper, and is used.
+        station: 0 to 255; 0 is all PLCs, and none answers; 255 is in no paper, and is used.
         command: the command's code.
         data: 0 to 500 characters without STX and ETX.
 

@@ -1,7 +1,7 @@
 """The data field of each FACON command (FACON paper, section 4.2).
 
 4F and 53 are drawn without the error character in the paper's figures but with it in its example, so both are
-taken, told apart by length.
+taken: the length shows which it is.
 """
 
 from __future__ import annotations

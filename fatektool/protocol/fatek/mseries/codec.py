@@ -9,12 +9,12 @@ r"""M-series binary frames (M-series paper, section 1).
 
 The CRC is CRC-16/MODBUS over length and payload.
 
-55 AA may stand in a payload, and so may a whole frame: nothing but the length says where a frame ends. How
+55 AA may be in a payload, and so may a whole frame: nothing but the length says where a frame ends. How
 the next is found behind a wrong length or noise: ``resync``.
 
 The tables of the paper allow 262 bytes of payload at most: 45 with 256 discretes. How long an answer to 53 is
-nobody says, so up to 453 are taken, 64 items of 7 bytes and 5 before them, and a length that lies makes no
-one wait for more.
+no paper says, so up to 453 are taken, 64 items of 7 bytes and 5 before them, and a wrong length makes nobody
+wait for more.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def frame_bytes(header: int, station: int, command: int, data: bytes) -> bytes:
 
     Args:
         header: QUERY or RESPONSE.
-        station: 0 to 255; 0 is everyone, and nobody answers; 255 is in no paper, and is used.
+        station: 0 to 255; 0 is all PLCs, and none answers; 255 is in no paper, and is used.
         command: the command's code.
         data: 0 to 451 bytes.
 

@@ -37,5 +37,5 @@ def crc16(data: bytes) -> int:
 
 
 def crc_bytes(data: bytes) -> bytes:
-    """The checksum as it stands on the wire, the low byte first."""
+    """The checksum as it is sent, the low byte first."""
     return crc16(data).to_bytes(2, "little")

@@ -1,1 +1,1 @@
-"""A simulated PLC that speaks the FACON protocol."""
+"""A simulated PLC over the FACON protocol."""

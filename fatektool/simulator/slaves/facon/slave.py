@@ -95,7 +95,7 @@ class FaconSlave(FatekSlave):
         return addressed(self.plcs, station)
 
     def code_of(self, request: RequestFrame) -> int | None:
-        """Two hex digits, or whatever else stands there."""
+        """Of two hex digits; None if there is something else."""
         return facon_frame.BYTE_OF.get(request.command)
 
     def framed(self, request: RequestFrame, data: bytes) -> bytes:

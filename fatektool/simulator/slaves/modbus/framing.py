@@ -1,6 +1,6 @@
 """What a Modbus slave needs of a framing, from the slave's end: requests found in a stream, answers framed.
 
-What stands around an answer is its request's: over TCP its transaction too.
+What is around an answer is its request's: over TCP its transaction too.
 """
 
 from __future__ import annotations

@@ -68,7 +68,7 @@ _R_LAST, _R_MOST = 3839, 3840
 
 
 def pieces(plc: SimulatedPlc, function: int, address: int, count: int) -> list[Piece]:
-    """What lies behind addresses of a function; refuses what is not in the map as it is now."""
+    """What the addresses of a function are; refuses what is not in the map as it is now."""
     spans = _spans(plc, function)
     return list(_cut(spans, address, count))
 

@@ -75,7 +75,7 @@ class RtuFraming:
 
 
 def _rtu_size(begun: bytes) -> int:
-    """How long the request is that begins here; 0 if more bytes must tell; below 0 if it is none."""
+    """How long the request is that begins here; 0 if more bytes are needed to know; below 0 if it is none."""
     if begun[0] > MAX_STATION:
         return -1
     if len(begun) < 2:

@@ -1,1 +1,1 @@
-"""A simulated PLC that speaks the M-series protocol."""
+"""A simulated PLC over the M-series protocol."""

@@ -12,8 +12,8 @@ section 1). A payload may hold 55 AA, and 51 10 too: the length alone says where
 
 So noise that looks like a header could hold back the requests behind it until as many bytes have come as its
 length says. It does not when station, command or length show that no command of the paper has begun there:
-then what stands behind it is looked at in the meantime. A request that was cut off does hold back, as the one
-behind it could as well be its data; its CRC tells in the end, and none behind it is lost.
+then what follows it is looked at in the meantime. A request that was cut off does hold back, as the one
+behind it could as well be its data; its CRC shows it in the end, and none behind it is lost.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ class MSeriesCutter:
         frames: list[tuple[int, bytes]] = []
         carried = len(self._begun)
         stream = self._begun + data
-        unfinished = None  # where the first frame stands that more bytes may complete
+        unfinished = None  # where the first frame is that more bytes may complete
         known = 0  # a frame behind a false one is known when the false one is
         at = stream.find(REQUEST)
         while at >= 0:
@@ -107,7 +107,7 @@ def sealed(header: bytes, payload: bytes) -> bytes:
 
 
 def payload_of(frame: bytes) -> bytes:
-    """What stands between the length and the CRC."""
+    """What is between the length and the CRC."""
     return frame[_HEAD:-4]
 
 

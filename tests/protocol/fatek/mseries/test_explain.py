@@ -190,7 +190,7 @@ def test_right_in_crc_and_wrong_in_content(payload: str) -> None:
 
 def test_stations() -> None:
     (everyone,) = explained(query("00 41 00"))
-    assert everyone.fields[3].meaning == "all (broadcast), nobody answers"
+    assert everyone.fields[3].meaning == "all (broadcast), no PLC answers"
     (nobody,) = explained(query("FF 40"))
     assert nobody.fields[3].meaning == "255, any PLC, or an Ethernet module"
 
