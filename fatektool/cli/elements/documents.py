@@ -17,8 +17,10 @@ if TYPE_CHECKING:
     from fatektool.jobs.elements.items import ItemValues
     from fatektool.jobs.elements.selection import Item
     from fatektool.jobs.elements.writes import NotTaken
+    from fatektool.jobs.snapshots.apply import ApplyPlan
     from fatektool.jobs.snapshots.compare import ValueChange
     from fatektool.jobs.snapshots.snapshot import Snapshot
+    from fatektool.jobs.snapshots.write_values import Written
     from fatektool.protocol.elements import Element
 
 
@@ -105,4 +107,41 @@ def snapshot_diff_document(
         **{side: {"file": str(file), "time": each.time} for side, (file, each) in (("a", a), ("b", b))},
         "same": not changes,
         "changes": [{"key": change.key, "a": change.a, "b": change.b} for change in changes],
+    }
+
+
+def apply_document(
+    plc: Plc, file: Path, snapshot: Snapshot, plan: ApplyPlan, done: Written, *, dry_run: bool
+) -> dict[str, Any]:
+    """``fatektool.apply/1``: what was to be written of a snapshot, and what the PLC did not keep."""
+    names = plan.keys()
+    return {
+        "schema": "fatektool.apply/1",
+        **where(plc),
+        "file": str(file),
+        "dry_run": dry_run,
+        "changes": [
+            {
+                "key": key,
+                "element": str(element),
+                "from": plan.values.present.values[key],
+                "to": snapshot.values[key],
+            }
+            for key, element, *_ in plan.changes
+        ],
+        "written": 0 if dry_run else len(plan.values.changes) - len(done.not_taken),
+        "not_taken": [
+            {
+                "key": names.get(each.element, str(each.element)),
+                "element": str(each.element),
+                "reason": each.reason,
+            }
+            for each in done.not_taken
+        ]
+        + [
+            {"key": key, "element": snapshot.elements[key]["element"], "reason": reason}
+            for key, reason in plan.refused.items()
+        ],
+        "not_written": [*plan.inputs, *plan.missing],
+        "safety_snapshot": None if done.safety is None else str(done.safety),
     }

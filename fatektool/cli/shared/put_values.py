@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from fatektool.cli.shared.addressee import Pace, with_status
 from fatektool.cli.shared.write_back import Offer, Writing
@@ -95,33 +95,6 @@ def change_line(change: RegisterChange) -> str:
     """What an element holds, and what it shall hold."""
     element = change.element
     return f"{element}  {_text(element, change.before)} -> {_text(element, change.after)}"
-
-
-def changes_document(plan: ValuesPlan, done: Written, *, dry_run: bool) -> dict[str, Any]:
-    """What was to be written and what came of it, for JSON, in hex."""
-    return {
-        "dry_run": dry_run,
-        "changes": [
-            {
-                "element": str(change.element),
-                "from": _text(change.element, change.before),
-                "to": _text(change.element, change.after),
-            }
-            for change in plan.changes
-        ],
-        "same": plan.same,
-        "written": 0 if dry_run else len(plan.changes) - len(done.not_taken),
-        "not_taken": [
-            {
-                "element": str(each.element),
-                "wanted": _text(each.element, each.wanted),
-                "got": None if each.got is None else _text(each.element, each.got),
-                "reason": each.reason,
-            }
-            for each in done.not_taken
-        ],
-        "safety_snapshot": None if done.safety is None else str(done.safety),
-    }
 
 
 def not_taken_words(done: Written) -> dict[str, str]:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
+from fatektool.cli.elements.documents import apply_document
 from fatektool.cli.elements.values import shown, warn_of
 from fatektool.cli.shared.addressee import Origin, Pace
 from fatektool.cli.shared.connection_options import connection_options
-from fatektool.cli.shared.documents import where
 from fatektool.cli.shared.modbus_map import modbus_map_option
 from fatektool.cli.shared.options import PATH
 from fatektool.cli.shared.put_values import offer_of, put_values, result_lines
@@ -28,10 +28,8 @@ if TYPE_CHECKING:
 
     from fatektool.cli.shared.connection import Connection
     from fatektool.cli.shared.output import Voice
-    from fatektool.client import Plc
     from fatektool.jobs.elements.writes import NotTaken
     from fatektool.jobs.snapshots.snapshot import Snapshot
-    from fatektool.jobs.snapshots.write_values import Written
 
 
 @click.command("apply", epilog="Example: fatektool snapshot apply press.json -p /dev/ttyUSB0 --only 'R*'")
@@ -61,7 +59,7 @@ def apply_command(
         offer = offer_of(plc, plan.values, writing, pace, rows=rows, lines=_plan_lines(plan, snapshot))
         origin.warn_unless_from(offer.here, file, voice)
         done = put_values(plc, plan.values, offer, file.stem)
-        document = _document(plc, file, plan, snapshot, done, dry_run=terms.dry_run)
+        document = apply_document(plc, file, snapshot, plan, done, dry_run=terms.dry_run)
     if not terms.dry_run and not only:
         forget_those_undone(connection.address.target, connection.address.station, file, voice)
     document |= offer.here.document() | {"source": origin.document()}
@@ -97,45 +95,3 @@ def _plan_lines(plan: ApplyPlan, snapshot: Snapshot) -> Iterator[str]:
     for key, *_ in plan.changes:
         before, after = plan.values.present.values[key], snapshot.values[key]
         yield f"{key:<{width}}  {shown(before)} -> {shown(after)}"
-
-
-def _document(
-    plc: Plc,
-    file: Path,
-    plan: ApplyPlan,
-    snapshot: Snapshot,
-    done: Written,
-    *,
-    dry_run: bool,
-) -> dict[str, Any]:
-    names = plan.keys()
-    return {
-        "schema": "fatektool.apply/1",
-        **where(plc),
-        "file": str(file),
-        "dry_run": dry_run,
-        "changes": [
-            {
-                "key": key,
-                "element": str(element),
-                "from": plan.values.present.values[key],
-                "to": snapshot.values[key],
-            }
-            for key, element, *_ in plan.changes
-        ],
-        "written": 0 if dry_run else len(plan.values.changes) - len(done.not_taken),
-        "not_taken": [
-            {
-                "key": names.get(each.element, str(each.element)),
-                "element": str(each.element),
-                "reason": each.reason,
-            }
-            for each in done.not_taken
-        ]
-        + [
-            {"key": key, "element": snapshot.elements[key]["element"], "reason": reason}
-            for key, reason in plan.refused.items()
-        ],
-        "not_written": [*plan.inputs, *plan.missing],
-        "safety_snapshot": None if done.safety is None else str(done.safety),
-    }

@@ -13,13 +13,17 @@ from fatektool.plcports.messages import MessageTable
 from fatektool.plcports.operands import CLINK_TYPES, HIGH_SPEED_TYPES, MBUS_MASTER_TYPES, MBUS_SLAVE_TYPES
 from fatektool.plcports.settings import UNWATCHED
 from fatektool.plcports.tables import HighSpeedTable, MbusTable, Table, kind_of
+from fatektool.protocol.values import raw_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+    from pathlib import Path
 
     from fatektool.client import Plc
     from fatektool.jobs.plcports.host import LinkHost
+    from fatektool.jobs.plcports.modem import ModemReport
     from fatektool.jobs.plcports.ports import PortsReport, ResultReport
+    from fatektool.jobs.snapshots.write_values import ValuesPlan, Written
     from fatektool.plcports.kinds import TableKind
     from fatektool.plcports.results import Fault, TransactionResult
     from fatektool.protocol.elements import Element
@@ -224,3 +228,71 @@ def table_notes(table: Table) -> list[str]:
     watched = f"note: {UNWATCHED} (senders here: {listed}); let the receiving PLC watch a bit that changes"
     procedure = "note: when the link runs, write 0 to R4058 until it stays 0: then the network works"
     return [*alone, watched, f"{procedure}; 'fatektool link result WR --kind md3' shows R4058 and R4059"]
+
+
+def modem_document(
+    plc: Plc, report: ModemReport, host: LinkHost, changes: dict[str, Any] | None
+) -> dict[str, Any]:
+    """``fatektool.link-modem/1``; ``changes`` are those of ``set``, None for ``show``."""
+    return {
+        "schema": "fatektool.link-modem/1",
+        **where(plc),
+        "os": host_document(host),
+        "modem": asdict(report.modem),
+        "registers": {
+            name: bool(value) if name.startswith("M") else f"{value:04X}"
+            for name, value in report.raw.items()
+        },
+        "errors": report.errors,
+        "set": changes,
+    }
+
+
+def table_write_document(
+    plc: Plc,
+    file: Path,
+    start: Element,
+    changes: dict[str, Any],
+    *,
+    table: Table,
+    faults: Sequence[Fault],
+    host: LinkHost,
+) -> dict[str, Any]:
+    """``fatektool.link-write/1``: the table as in ``table_document``, and ``changes`` of its registers."""
+    return {
+        "schema": "fatektool.link-write/1",
+        **where(plc),
+        "os": host_document(host),
+        "file": str(file),
+        "sr": str(start),
+        "kind": kind_of(table).value,
+        "faults": fault_documents(kind_of(table), faults),
+        **changes,
+    }
+
+
+def changes_document(plan: ValuesPlan, done: Written, *, dry_run: bool) -> dict[str, Any]:
+    """What was to be written and what came of it, for JSON, in hex."""
+    return {
+        "dry_run": dry_run,
+        "changes": [
+            {
+                "element": str(change.element),
+                "from": raw_text(change.before, change.element.kind.bits),
+                "to": raw_text(change.after, change.element.kind.bits),
+            }
+            for change in plan.changes
+        ],
+        "same": plan.same,
+        "written": 0 if dry_run else len(plan.changes) - len(done.not_taken),
+        "not_taken": [
+            {
+                "element": str(each.element),
+                "wanted": raw_text(each.wanted, each.element.kind.bits),
+                "got": None if each.got is None else raw_text(each.got, each.element.kind.bits),
+                "reason": each.reason,
+            }
+            for each in done.not_taken
+        ],
+        "safety_snapshot": None if done.safety is None else str(done.safety),
+    }

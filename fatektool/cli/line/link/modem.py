@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from fatektool.cli.elements.values import warn_of
-from fatektool.cli.line.link.documents import host_document
+from fatektool.cli.line.link.documents import changes_document, modem_document
 from fatektool.cli.line.link.rows import modem_rows
 from fatektool.cli.shared.addressee import Pace
 from fatektool.cli.shared.connection_options import connection_options
-from fatektool.cli.shared.documents import where
 from fatektool.cli.shared.output import Voice, table
 from fatektool.cli.shared.put_values import (
     change_line,
-    changes_document,
     not_taken_words,
     offer_of,
     put_values,
@@ -25,14 +22,13 @@ from fatektool.cli.shared.put_values import (
 from fatektool.cli.shared.write_back import Writing
 from fatektool.cli.shared.write_options import Terms, write_options
 from fatektool.errors import PlcError
-from fatektool.jobs.plcports.host import LinkHost, read_host
+from fatektool.jobs.plcports.host import read_host
 from fatektool.jobs.plcports.modem import ModemReport, ModemSettings, plan_modem, read_modem
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fatektool.cli.shared.connection import Connection
-    from fatektool.client import Plc
 
 
 @click.group("modem", epilog="Example: fatektool link modem show -p /dev/ttyUSB0")
@@ -50,7 +46,7 @@ def show_command(connection: Connection, voice: Voice) -> int:
     with connection.open(voice) as plc:
         report = read_modem(plc)
         host = read_host(plc)
-        document = _document(plc, report, None, host)
+        document = modem_document(plc, report, host, None)
     voice.show(document, table(_rows(report)))
     for warning in host.warnings():
         voice.warn(warning)
@@ -117,7 +113,8 @@ def set_command(
         offer = offer_of(plc, plan, writing, pace, rows=[], lines=map(change_line, plan.changes))
         done = put_values(plc, plan, offer, "modem")
         report = read_modem(plc)
-        document = _document(plc, report, changes_document(plan, done, dry_run=terms.dry_run), host)
+        changes = changes_document(plan, done, dry_run=terms.dry_run)
+        document = modem_document(plc, report, host, changes)
     document |= offer.here.document()
     voice.show(document, [*result_lines(plan, done, offer), *table(_rows(report))])
     warn_of(not_taken_words(done), voice)
@@ -127,20 +124,3 @@ def set_command(
 def _rows(report: ModemReport) -> Iterator[tuple[str, object]]:
     for name, value in modem_rows(report.modem):
         yield name, "-" if value is None else value
-
-
-def _document(
-    plc: Plc, report: ModemReport, written: dict[str, Any] | None, host: LinkHost
-) -> dict[str, Any]:
-    return {
-        "schema": "fatektool.link-modem/1",
-        **where(plc),
-        "os": host_document(host),
-        "modem": asdict(report.modem),
-        "registers": {
-            name: bool(value) if name.startswith("M") else f"{value:04X}"
-            for name, value in report.raw.items()
-        },
-        "errors": report.errors,
-        "set": written,
-    }

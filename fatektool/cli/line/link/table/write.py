@@ -8,15 +8,13 @@ from typing import TYPE_CHECKING
 import click
 
 from fatektool.cli.elements.values import warn_of
-from fatektool.cli.line.link.documents import fault_documents, host_document
+from fatektool.cli.line.link.documents import changes_document, fault_documents, table_write_document
 from fatektool.cli.line.link.table.view import table_lines
 from fatektool.cli.shared.addressee import Pace
 from fatektool.cli.shared.connection_options import connection_options
-from fatektool.cli.shared.documents import where
 from fatektool.cli.shared.options import PATH
 from fatektool.cli.shared.put_values import (
     change_line,
-    changes_document,
     not_taken_words,
     offer_of,
     put_values,
@@ -78,17 +76,9 @@ def write_command(
         rows = [("file", file), ("to", f"{start}, {len(words)} registers")]
         offer = offer_of(plc, plan, writing, pace, rows=rows, lines=table_lines(table, faults))
         done = put_values(plc, plan, offer, file.stem)
-        document = {
-            "schema": "fatektool.link-write/1",
-            **where(plc),
-            "os": host_document(host),
-            "file": str(file),
-            "sr": str(start),
-            "kind": kind_of(table).value,
-            "faults": fault_documents(kind_of(table), faults),
-            **changes_document(plan, done, dry_run=terms.dry_run),
-            **offer.here.document(),
-        }
+        changes = changes_document(plan, done, dry_run=terms.dry_run)
+        document = table_write_document(plc, file, start, changes, table=table, faults=faults, host=host)
+    document |= offer.here.document()
     voice.show(document, result_lines(plan, done, offer, *map(change_line, plan.changes)))
     warn_of(not_taken_words(done), voice)
     return PlcError.exit_code if done.not_taken else 0
