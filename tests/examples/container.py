@@ -15,6 +15,7 @@ this computer's, so that simulated PLCs are reached.
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import functools
 import grp
@@ -25,7 +26,9 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
+from importlib.util import cache_from_source
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
 
@@ -101,7 +104,7 @@ def run_in_container(
         "-D",
         str(root),
     ]
-    words += [f"--overlay-ro=/usr:{over}:/usr", f"--bind-ro={ROOT}:/opt/project", f"--bind={out}:/out"]
+    words += [f"--overlay-ro=/usr:{over}:/usr", f"--bind-ro={_project()}:/opt/project", f"--bind={out}:/out"]
     words += [f"--bind-ro={sys.base_prefix}:/opt/python", f"--bind-ro={_packages()}:/opt/packages"]
     if serial_port is not None:
         device = os.path.realpath(serial_port)
@@ -191,6 +194,25 @@ def _make_root(root: Path) -> None:
     _write(root / "etc/hostname", "gateway\n")
     _write(root / "etc/sudoers", "root ALL=(ALL:ALL) NOPASSWD: ALL\n", 0o440)
     _write(root / "etc/systemd/system/script.service", UNIT)
+
+
+@functools.cache
+def _project() -> Path:
+    """This project with its compiled files beside their sources, wherever they are kept here."""
+    if sys.pycache_prefix is None:
+        return ROOT
+    folder = Path(tempfile.mkdtemp(prefix="fatektool-project-"))
+    atexit.register(shutil.rmtree, folder)
+    folder.chmod(0o755)
+    for name in ("fatektool", "examples"):
+        shutil.copytree(ROOT / name, folder / name)
+    for path in (ROOT / "fatektool").rglob("*.py"):
+        compiled = Path(cache_from_source(str(path)))
+        if compiled.exists():
+            there = folder / path.relative_to(ROOT).parent / "__pycache__"
+            there.mkdir(exist_ok=True)
+            shutil.copy2(compiled, there)
+    return folder
 
 
 def _packages() -> str:

@@ -58,6 +58,7 @@ class Mortals:
 
     def __init__(self, process: subprocess.Popen[str]) -> None:
         self._process = process
+        self.environment: dict[str, str] = {}
 
     def __call__(
         self,
@@ -77,6 +78,7 @@ class Mortals:
             "user": user,
             "locks": locks,
             "limit": limit,
+            "environment": self.environment,
         }
         assert self._process.stdin is not None
         assert self._process.stdout is not None
@@ -85,19 +87,24 @@ class Mortals:
         return Life(**json.loads(self._process.stdout.readline()))
 
 
-@pytest.fixture
-def mortals(tmp_path: Path) -> Iterator[Mortals]:
+@pytest.fixture(scope="session")
+def all_mortals() -> Iterator[Mortals]:
     if not hasattr(os, "fork"):
         pytest.skip("needs fork and SIGKILL")
-    locks = {"FATEKTOOL_LOCK_DIR": str(tmp_path / "locks"), "PYTHONIOENCODING": "utf-8"}
     with subprocess.Popen(
         [sys.executable, "-m", "tests.reliability.dying"],
         cwd=ROOT,
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         text=True,
-        env=dict(os.environ) | locks,
     ) as process:
         yield Mortals(process)
         assert process.stdin is not None
         process.stdin.close()
+
+
+@pytest.fixture
+def mortals(all_mortals: Mortals, place: Path) -> Mortals:
+    assert place.exists()  # which has set what it needs
+    all_mortals.environment = os.environ | {"PYTHONIOENCODING": "utf-8"}
+    return all_mortals

@@ -7,7 +7,7 @@ The process has loaded everything and makes a child for each command line, which
 line of JSON in, a line of JSON out::
 
     {"words": ["backup", ...], "folder": "/tmp/..", "at": 7, "how": "kill", "user": null,
-     "locks": null, "limit": null}
+     "locks": null, "limit": null, "environment": {}}
     {"code": -9, "steps": ["open x.lock", ...], "out": "", "err": ""}
 
 ``how`` is ``kill`` (SIGKILL) or ``full`` (ENOSPC, in ``folder`` only); ``user`` a user to become, ``locks``
@@ -28,15 +28,9 @@ import traceback
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, Self
 
-import fatektool.cli.programs.restore
-import fatektool.cli.programs.verify
-import fatektool.connection
-import fatektool.inventory.entries
-import fatektool.jobs.programs.verify
-import fatektool.transport.open
-import fatektool.transport.tcp  # noqa: F401  # all of these so that no child has to load them
 from fatektool.cli import run
 from fatektool.transport.sockets import SocketTransport
+from tests.forks.server import load_all
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -143,6 +137,8 @@ def live(order: dict[str, Any], log: int, out: int, err: int) -> None:
         os.dup2(err, 2)
         folder = Path(order["folder"])
         os.chdir(folder)
+        os.environ.clear()
+        os.environ.update(order["environment"])
         if order["locks"] is not None:
             os.environ["FATEKTOOL_LOCK_DIR"] = order["locks"]
         if order["user"] is not None:
@@ -161,6 +157,7 @@ def live(order: dict[str, Any], log: int, out: int, err: int) -> None:
 
 
 def main() -> None:
+    load_all()
     answers = os.fdopen(os.dup(1), "w")
     for line in sys.stdin:
         files = [tempfile.TemporaryFile() for _ in range(3)]  # noqa: SIM115  # closed below

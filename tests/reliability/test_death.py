@@ -181,6 +181,26 @@ def cut_at_read(door: Door, number: int) -> None:
     device.read_page = read_page  # type: ignore[method-assign]
 
 
+def cut_at_the_reading_back(door: Door) -> None:
+    """Cut the PLC's power, once, when a page is asked for after one was written."""
+    device, faults = door.simulation.plcs[1], door.simulation.faults
+    assert faults is not None
+    read, write, written = type(device).read_page, type(device).write_page, [False]
+
+    def read_page(page: int) -> bytes:
+        if written == [True]:
+            faults.powered = False
+            written.append(False)
+        return read(device, page)
+
+    def write_page(page: int, content: bytes) -> None:
+        written[0] = True
+        write(device, page, content)
+
+    device.read_page = read_page  # type: ignore[method-assign]
+    device.write_page = write_page  # type: ignore[method-assign]
+
+
 @pytest.mark.parametrize("page", range(1, 2 * PAGES + 1))
 def test_the_power_goes_at_a_page_of_a_backup(door: Door, place: Path, cli: Cli, page: int) -> None:
     cut_at_read(door, page)
@@ -439,7 +459,7 @@ def test_half_a_restore_is_undone_by_the_safety_backup(place: Path, cli: Cli, wr
         details = cli(*RESTORE, "-p", door.target).document("error")["error"]["details"]
         way_back = ["restore", details["safety_backup"], "--yes", "--json", "-p", door.target]
         door.simulation.power_on()
-        cut_at_read(door, 2 * PAGES + write)  # while it is read back
+        cut_at_the_reading_back(door)
         assert cli(*way_back).code == 6
         door.simulation.power_on()
         assert cli(*way_back).code == 0
