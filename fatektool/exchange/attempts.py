@@ -86,12 +86,13 @@ class Attempts:
         """
         self._renew_if_silent()
         counters, receiver = self._state.counters, self._receiver
-        sent = self._sender.prepare(request)
+        sent = self._sender.described(request, *self._sender.encode(request))
         receiver.instead, receiver.gateway_error = "", None
         counters.exchanges += 1
         self._received.clear()
         try:
-            self._sender.send(sent)
+            self._sender.send(sent.raw)
+            receiver.outstanding.note_sent(sent, self._state.transport.clock())
             return self._await(request, sent)
         except GatewayTimeout as error:
             counters.timeouts += 1

@@ -72,7 +72,8 @@ def read_until_refused(
     try:
         while len(batch.answers) < len(requests):
             if len(batch.answers) + 1 < len(requests):
-                ask_in_stream(link, requests, len(batch.answers), batch.take)
+                take = batch.answers.append if on_answer is None else batch.take
+                ask_in_stream(link, requests, len(batch.answers), take)
             if len(batch.answers) < len(requests):
                 batch.ask()
     except PlcRefused as error:

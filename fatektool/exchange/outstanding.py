@@ -61,10 +61,15 @@ class Outstanding:
         """Since when the oldest answer is outstanding; None if none is."""
         return self._requests[0].since if self._requests else None
 
-    def note_sent(self, sent: Sent) -> None:
-        """A request was sent."""
+    def note_sent(self, sent: Sent, at: float) -> None:
+        """A request was sent.
+
+        Args:
+            sent: the request.
+            at: when, by the transport's clock.
+        """
         self._last = sent
-        self._last_at = self._state.transport.clock()
+        self._last_at = at
         self._last_given_s = self._state.wait_s
 
     def forget(self) -> None:
@@ -95,13 +100,13 @@ class Outstanding:
 
     def note_answer(self, frame: Frame) -> None:
         """An answer was taken. It may be that of an earlier like request; then this one's is outstanding."""
-        if not self._requests or self._last is None:
-            return
         for place, request in enumerate(self._requests):
             if request.is_answered_by(frame):
                 self._answered_at = now = self._state.transport.clock()
-                self._requests[place] = request._replace(since=self._last_since, before_s=now - request.since)
-                return
+                before_s = now - request.since
+                self._requests[place] = request._replace(since=self._last_since, before_s=before_s)
+                break
+        self._last = None
 
     def take_late(self, frame: Frame) -> bool:
         """True if a frame of this station, which answers nothing asked now, is one of these answers."""

@@ -151,16 +151,24 @@ class Receiver:
         """
         left = self.decoder.clear()
         found = self._transport.drain()
-        if not left and not found:
-            return False
+        if left or found:
+            self.note_unasked(found, left)
+        return bool(left or found)
+
+    def note_unasked(self, found: bytes, left: int = 0) -> None:
+        """Take note of what came and nobody had asked for.
+
+        Args:
+            found: bytes from the transport.
+            left: how many bytes the decoder held that belonged to no frame.
+        """
         self._counters.bytes_received += len(found)
         self.needs_fence = True
         if left:
             self.unsolicited += 1
-        self._note_unasked(found)
+        self._look_at(found)
         if self.decoder.clear():
             self.unsolicited += 1
-        return True
 
     def listen_until(self, moment: float, *, or_late: bool = False) -> None:
         """Wait until a moment of the transport's clock, and take note of whatever comes.
@@ -179,7 +187,7 @@ class Receiver:
                 continue
             self._counters.bytes_received += len(found)
             self.needs_fence = True
-            self._note_unasked(found)
+            self._look_at(found)
 
     def listen_for_late(self) -> None:
         """Before a PLC is called silent, or its connection made anew: is its answer only late?"""
@@ -189,8 +197,7 @@ class Receiver:
             longest_s = min(MOST_EXTENSION * timeout_s, timeout_s + LONGEST_LISTENING_S)
             self.listen_until(since + longest_s, or_late=True)
 
-    def _note_unasked(self, found: bytes) -> None:
-        """Take note of bytes that nobody asked for."""
+    def _look_at(self, found: bytes) -> None:
         self.decoder.feed(found)
         while True:
             try:

@@ -12,6 +12,9 @@ if TYPE_CHECKING:
     from fatektool.exchange.state import LinkState
     from fatektool.protocol.commands import Request
 
+Encoded = tuple[bytes, int]
+"""A request to be sent: its frame, and its transaction number, 0 where the protocol has none."""
+
 _LEAST_QUIET_S: Final = 0.00175
 """Above 19200 baud the pause between frames gets no shorter (Modbus over serial line, section 2.5.1.1)."""
 
@@ -24,7 +27,8 @@ class Sender:
         receiver: listens in the pause, and is told what was sent.
 
     Attributes:
-        shapes: what the answers to all requests since the last fence look like (``Codec.shape``).
+        shapes: what the answers to all requests since the last fence look like (``Codec.shape``); empty where
+            fences are unique.
     """
 
     def __init__(self, state: LinkState, receiver: Receiver) -> None:
@@ -32,27 +36,43 @@ class Sender:
         self._state = state
         self._receiver = receiver
         self._number = 0
+        self._numbers = state.codec.numbers
+        self._unique_fences = state.codec.unique_fences
         # A gateway keeps the pause between frames itself.
         quiet = state.codec.quiet_chars if state.transport.line is not None else 0.0
         self._quiet_s = max(quiet * state.byte_time_s, _LEAST_QUIET_S) if quiet else 0.0
         self._quiet_from = state.transport.clock()
 
-    def prepare(self, request: Request[Any]) -> Sent:
-        """A request as it is sent; its answer may come from now on, until the next fence.
+    def encode(self, request: Request[Any]) -> Encoded:
+        """A request to be sent; its answer may come from now on, until the next fence.
 
         Raises:
             UsageError: the protocol cannot express it.
             LineReadOnly: it writes, and the line is read-only.
         """
         state = self._state
-        codec, station = state.codec, state.station
-        state.require_permission(request)
-        self.note_asked(request)
-        state.counters.writes += request.writes
-        number = self._number = (self._number + 1) % codec.numbers
+        if request.writes:
+            state.require_permission(request)
+            state.counters.writes += 1
+        if not self._unique_fences:
+            self.note_asked(request)
+        if self._numbers > 1:
+            self._number = (self._number + 1) % self._numbers
+        number = self._number
+        return state.codec.encode(state.station, request, number), number
+
+    def described(self, request: Request[Any], raw: bytes, number: int) -> Sent:
+        """A request with what its answer must carry.
+
+        Args:
+            request: it.
+            raw: its frame.
+            number: its transaction number.
+        """
+        codec = self._state.codec
         return Sent(
-            codec.encode(station, request, number),
-            station,
+            raw,
+            self._state.station,
             codec.code(request),
             number,
             codec.answer_bytes(request),
@@ -61,14 +81,14 @@ class Sender:
 
     def note_asked(self, request: Request[Any]) -> None:
         """Remember what the answer to a request looks like; it may come at any time until the next fence."""
-        self.shapes.add(self._state.codec.shape(request))
+        if not self._unique_fences:
+            self.shapes.add(self._state.codec.shape(request))
 
-    def send(self, sent: Sent) -> None:
-        """Write a request, once the line has been silent for as long as the protocol requires."""
+    def send(self, raw: bytes) -> None:
+        """Write a frame, once the line has been silent for as long as the protocol requires."""
         if self._quiet_s:
             self._receiver.listen_until(self._quiet_from + self._quiet_s)
-        self._state.transport.write(sent.raw)
-        self._receiver.outstanding.note_sent(sent)
+        self._state.transport.write(raw)
 
     def note_end(self) -> None:
         """An exchange is over: the line may be silent from now on."""

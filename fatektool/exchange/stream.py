@@ -1,185 +1,253 @@
-"""The fast way through many requests: as long as all is in order, and not one exchange longer.
+"""The fast way through many requests, as long as nothing unexpected comes.
 
-An answer to a read sends the next request off as soon as it has the right length, and is looked at while the
-PLC is at work on that. A write goes out only when the one before it is acknowledged, but is encoded by then::
+An answer to a read that has the right length lets the next request go at once, and is examined while the PLC
+works on that one. A write is sent when the one before it is acknowledged, and is encoded by then::
 
-    reads     request n+1 ─>  look at answer n, encode request n+2  <─ answer n+1
-    writes    request n   ─>  encode request n+1  <─ answer n, look at it
+    reads     request n+1 ─>  examine answer n, encode request n+2  <─ answer n+1
+    writes    request n   ─>  encode request n+1  <─ answer n, examine it
 
-The first sign of anything else (a time-out, a wrong length or checksum, input beside the answer, an error
-code) ends it. The request that is on its way then is given up, and whoever called goes on with ``Link.ask``,
-behind a fence.
+What an answer must be is known before it comes: its length, and all of it but values and checksum. So a good
+one is taken without a decoder (``Codec.good_answer``). Anything else (a time-out, a wrong length or checksum,
+input beside the answer, an error code) ends the stream: a decoder finds out what it was, the answer that may
+still come is outstanding, and the caller goes on with ``Link.ask``, behind a fence.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 from fatektool.errors import FrameError, PlcBusy, PlcRefused, TransportError, TransportTimeout
+from fatektool.exchange.receiver import READ_BYTES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from fatektool.exchange.link import Link
-    from fatektool.exchange.sent import Sent
+    from fatektool.exchange.sender import Encoded
     from fatektool.protocol.codec import Frame
     from fatektool.protocol.commands import Request
 
 A = TypeVar("A")
 
-_READ_BYTES = 4096
-
 
 def ask_in_stream(link: Link, requests: Sequence[Request[A]], first: int, take: Callable[[A], None]) -> bool:
-    """Ask one after the other from ``requests[first]``, until the end or the first sign of disorder.
+    """Send one request after the other from ``requests[first]``, until the end or anything unexpected.
 
     Args:
-        link: the line.
+        link: the link.
         requests: all reads, or all writes.
         first: the one to begin with.
         take: is given each answer, in order.
 
     Returns:
-        True if the request behind the last answer was sent, and what became of it is not known.
+        True if the request behind the last answer was sent, and its outcome is not known.
 
     Raises:
-        PlcRefused: a write is refused; of a read, the caller hears it by asking again.
-        LineReadOnly: they write, and the line may only be read.
+        PlcRefused: a write is refused; of a read, the caller learns it by asking again.
+        LineReadOnly: they write, and the line is read-only.
     """
-    receiver = link.receiver
-    if receiver.drop_input() or receiver.needs_fence or link.echoes is not False:
+    if link.receiver.drop_input() or link.receiver.needs_fence or link.echoes is not False:
         return False
-    steps = _write_by_write if requests[first].writes else _read_ahead
+    stream = _Stream(link, take)
+    way = stream.write if requests[first].writes else stream.read
     try:
-        return steps(link, requests, first, take)
+        return way(requests, first)
     except TransportError:
-        receiver.note_no_answer()
+        stream.leave_outstanding(waited_for=True)
         return True
     except PlcRefused:
         raise
     except BaseException:  # an interrupt: the answer may still come
-        receiver.note_no_answer()
+        stream.leave_outstanding(waited_for=True)
         raise
 
 
-def _read_ahead(link: Link, requests: Sequence[Request[A]], first: int, take: Callable[[A], None]) -> bool:
-    receiver = link.receiver
-    last = len(requests) - 1
-    asked = sent = link.sender.prepare(requests[first])
-    waiting: bytes | None = None  # the last answer, not yet looked at
-    for place in range(first, len(requests)):
-        link.sender.send(sent)
-        link.counters.exchanges += 1
-        if waiting is not None and not _accept(link, requests[place - 1], asked, waiting, take):
-            receiver.give_up_answer()
-            return True
-        asked = sent
-        if place < last:
-            sent = link.sender.prepare(requests[place + 1])
-        received = _receive(link, asked)
-        link.sender.note_end()
-        if received is None:
-            return True
-        if isinstance(received, bytes):
-            waiting = received
-        elif _accept(link, requests[place], asked, received, take):
-            waiting = None
-        else:  # a refusal, mostly: nothing is sent behind it whose answer nobody would wait for
-            return True
-        if receiver.drop_input():
-            break
-    return waiting is not None and not _accept(link, requests[place], asked, waiting, take)
+class _Stream(Generic[A]):
+    """Requests in a row; the last one sent is remembered, as its answer may still come."""
 
+    def __init__(self, link: Link, take: Callable[[A], None]) -> None:
+        self._take = take
+        self._state = link.state
+        self._codec = link.codec
+        self._read = link.transport.read
+        self._clock = link.transport.clock
+        self._counters = link.counters
+        self._receiver = link.receiver
+        self._sender = link.sender
+        self._byte_time_s = link.byte_time_s
+        self._wait_s = link.state.wait_s  # a late answer, which makes it longer, ends the stream
+        self._request: Request[A] | None = None
+        self._encoded: Encoded = (b"", 0)
+        self._sent_at = 0.0
 
-def _write_by_write(
-    link: Link, requests: Sequence[Request[A]], first: int, take: Callable[[A], None]
-) -> bool:
-    receiver = link.receiver
-    sent = link.sender.prepare(requests[first])
-    for place in range(first, len(requests)):
-        asked = sent
-        link.sender.send(asked)
-        link.counters.exchanges += 1
-        if place + 1 < len(requests):
-            sent = link.sender.prepare(requests[place + 1])
-        waiting = _receive(link, asked)
-        link.sender.note_end()
-        if waiting is None:
-            return True
-        more = receiver.drop_input()
-        if not _accept(link, requests[place], asked, waiting, take):
-            receiver.note_no_answer()
-            return True
-        if more:
-            break
-    return False
+    def read(self, requests: Sequence[Request[A]], first: int) -> bool:
+        """Send each request before the answer to the one before is examined; see ``ask_in_stream``."""
+        count = len(requests)
+        encode, drain = self._sender.encode, self._state.transport.drain
+        following = encode(requests[first])
+        whole: bytes | None = None  # the last answer, if it is not examined yet
+        for place in range(first, count):
+            before = self._encoded
+            self._send(requests[place], following)
+            if whole is not None and not self._examine(requests[place - 1], before, whole):
+                self.leave_outstanding(waited_for=False)
+                return True
+            if place + 1 < count:
+                following = encode(requests[place + 1])
+            answer = self._receive(requests[place])
+            if answer is None:
+                return True
+            if isinstance(answer, bytes):
+                whole = answer
+                if found := drain():
+                    self._receiver.note_unasked(found)
+                    break
+            elif self._examine_frame(requests[place], self._encoded, answer):
+                whole = None
+                if self._receiver.drop_input():
+                    break
+            else:  # a refusal, mostly: nothing is sent behind it whose answer nobody would wait for
+                return True
+        return whole is not None and not self._examine(requests[place], self._encoded, whole)
 
+    def write(self, requests: Sequence[Request[A]], first: int) -> bool:
+        """Send each request when the one before is acknowledged; see ``ask_in_stream``."""
+        count = len(requests)
+        following = self._sender.encode(requests[first])
+        for place in range(first, count):
+            request = requests[place]
+            self._send(request, following)
+            if place + 1 < count:
+                following = self._sender.encode(requests[place + 1])
+            answer = self._receive(request)
+            if answer is None:
+                return True
+            more = self._receiver.drop_input()
+            if isinstance(answer, bytes):
+                taken = self._examine(request, self._encoded, answer)
+            else:
+                taken = self._examine_frame(request, self._encoded, answer)
+            if not taken:
+                self.leave_outstanding(waited_for=True)
+                return True
+            if more:
+                break
+        return False
 
-def _receive(link: Link, sent: Sent) -> Frame | bytes | None:
-    """Bytes of the answer's length, not looked at; a frame, if one came before; else None, and a doubt."""
-    receiver, transport = link.receiver, link.transport
-    size = sent.size
-    rest = wait_s = (len(sent.raw) + size) * link.byte_time_s + link.state.wait_s
-    began = transport.clock()
-    whole = b""
-    looked = False
-    while rest > 0 or not looked:  # what has come in time counts, however late this process looks
-        looked = rest <= 0
+    def leave_outstanding(self, *, waited_for: bool) -> None:
+        """The answer to the last request sent may still come.
+
+        Args:
+            waited_for: False if it is given up at once.
+        """
+        if self._request is not None:
+            sent = self._sender.described(self._request, *self._encoded)
+            self._receiver.outstanding.note_sent(sent, self._sent_at)
+        if waited_for:
+            self._receiver.note_no_answer()
+        else:
+            self._receiver.give_up_answer()
+
+    def _send(self, request: Request[A], encoded: Encoded) -> None:
+        self._request = request
+        self._encoded = encoded
+        self._sender.send(encoded[0])
+        self._sent_at = self._clock()
+        self._counters.exchanges += 1
+
+    def _receive(self, request: Request[A]) -> bytes | Frame | None:
+        """Bytes of the answer's length; a frame, if one of another length came; else None."""
+        size = self._codec.answer_bytes(request)
+        limit_s = (len(self._encoded[0]) + size) * self._byte_time_s + self._wait_s
         try:
-            data = transport.read(_READ_BYTES, max(0.0, rest))
+            data = self._read(READ_BYTES, limit_s)
         except TransportTimeout:
             data = b""
-        link.counters.bytes_received += len(data)
-        whole += data
-        if len(whole) == size:  # to send what comes next is more urgent than to look at it
-            receiver.decoder.clear()
-            return whole
-        receiver.decoder.feed(data)
+        self._counters.bytes_received += len(data)
+        answer = data if len(data) == size else self._receive_rest(data, size, self._sent_at + limit_s)
+        self._sender.note_end()
+        return answer
+
+    def _receive_rest(self, data: bytes, size: int, end: float) -> bytes | Frame | None:
+        """The same, in pieces. What has come in time counts, however late this process looks.
+
+        Args:
+            data: what came so far.
+            size: the answer's length.
+            end: the end of its time, by the transport's clock.
+        """
+        decoder = self._receiver.decoder
+        whole = b""
+        looked = False
+        while True:
+            whole += data
+            if len(whole) == size:
+                decoder.clear()
+                return whole
+            decoder.feed(data)
+            try:
+                frame = decoder.next_frame()
+            except FrameError as error:
+                self._receiver.note_bad_bytes(error)
+                self.leave_outstanding(waited_for=False)
+                return None
+            if frame is not None:
+                return frame
+            rest = end - self._clock()
+            if rest <= 0 and looked:
+                self._counters.timeouts += 1
+                self.leave_outstanding(waited_for=True)
+                return None
+            looked = rest <= 0
+            try:
+                data = self._read(READ_BYTES, max(0.0, rest))
+            except TransportTimeout:
+                data = b""
+            self._counters.bytes_received += len(data)
+
+    def _examine(self, request: Request[A], encoded: Encoded, whole: bytes) -> bool:
+        """Take an answer of the right length if it is the good one; else find out what it is.
+
+        Raises:
+            PlcRefused: a write is refused.
+        """
         try:
-            frame = receiver.decoder.next_frame()
+            answer = self._codec.good_answer(request, encoded[0], whole)
+        except FrameError:
+            return self._examine_closely(request, encoded, whole)
+        self._take(answer)
+        self._state.answered.add(request.command)
+        return True
+
+    def _examine_closely(self, request: Request[A], encoded: Encoded, whole: bytes) -> bool:
+        decoder = self._receiver.decoder
+        decoder.feed(whole)
+        try:
+            frame = decoder.next_frame()
         except FrameError as error:
-            receiver.note_bad_bytes(error)
-            receiver.give_up_answer()
-            return None
-        if frame is not None:
-            return frame
-        rest = began + wait_s - transport.clock()
-    link.counters.timeouts += 1
-    receiver.note_no_answer()
-    return None
-
-
-def _accept(
-    link: Link, request: Request[A], sent: Sent, waiting: Frame | bytes, take: Callable[[A], None]
-) -> bool:
-    """Look at an answer; True if it is what the request asked for.
-
-    Raises:
-        PlcRefused: a write is refused.
-    """
-    receiver = link.receiver
-    frame: Frame | None = None
-    try:
-        if isinstance(waiting, bytes):
-            receiver.decoder.feed(waiting)
-            frame = receiver.decoder.next_frame()
-        else:
-            frame = waiting
-        if frame is None:
+            self._receiver.note_bad_bytes(error)
             return False
-        if sent.answered_by(frame):
-            take(link.codec.parse_answer(request, frame))
-            link.state.answered.add(request.command)
-            return True
-    except FrameError as error:
-        if frame is None:
-            receiver.note_bad_bytes(error)
+        return frame is not None and self._examine_frame(request, encoded, frame)
+
+    def _examine_frame(self, request: Request[A], encoded: Encoded, frame: Frame) -> bool:
+        """Take the answer in a frame; False if it is none, or an error code.
+
+        Raises:
+            PlcRefused: a write is refused.
+        """
+        sent = self._sender.described(request, *encoded)
+        try:
+            if sent.answered_by(frame):
+                self._take(self._codec.parse_answer(request, frame))
+                self._state.answered.add(request.command)
+                return True
+        except FrameError:
+            pass
+        except PlcRefused:
+            if request.writes:
+                raise
             return False
-    except PlcRefused:
-        if request.writes:
-            raise
+        except PlcBusy:  # to be asked again, with pauses
+            return False
+        self._receiver.note_stray(frame)
         return False
-    except PlcBusy:  # to be asked again, with pauses
-        return False
-    receiver.note_stray(frame)
-    return False

@@ -136,6 +136,21 @@ class Codec(Protocol):
             FrameError: no answer to this request, by length or content.
         """
 
+    def good_answer(self, request: Request[A], asked: bytes, raw: bytes) -> A:
+        """What a good answer says, read without a decoder, for a stream of requests.
+
+        It checks as much as a decoder and ``parse_answer`` do, with one comparison for all that the request
+        determines: station, command, number, no error.
+
+        Args:
+            request: what is asked.
+            asked: its frame.
+            raw: as many bytes as ``answer_bytes`` says.
+
+        Raises:
+            FrameError: these bytes are anything else than the good answer; a decoder finds out what.
+        """
+
     def encode_answer(self, station: int, request: Request[A], answer: A, number: int = 0) -> bytes:
         """The frame in which a PLC gives this answer to a request.
 
@@ -206,6 +221,10 @@ class Codec(Protocol):
 
     def echo_may_pass(self, request: Request[A]) -> bool:
         """True if the request's own echo could be taken for its answer."""
+
+    @property
+    def unique_fences(self) -> bool:
+        """True if the answer to a fence can be that of no other request, whatever was asked before."""
 
     def shape(self, request: Request[Any]) -> bytes:
         """What an answer shows of its request: fences avoid those of what was asked."""

@@ -38,6 +38,7 @@ class Watched(FaconCodec):
     """Notes when a request is encoded and when its answer is looked at."""
 
     def __init__(self, events: Events) -> None:
+        super().__init__()
         self._events = events
 
     def encode(self, station: int, request: Request[Any], number: int = 0) -> bytes:
@@ -47,6 +48,10 @@ class Watched(FaconCodec):
     def parse_answer(self, request: Request[Any], frame: Frame) -> Any:
         self._note("decode", request)
         return super().parse_answer(request, frame)
+
+    def good_answer(self, request: Request[Any], asked: bytes, raw: bytes) -> Any:
+        self._note("decode", request)
+        return super().good_answer(request, asked, raw)
 
     def _note(self, what: str, request: Request[Any]) -> None:
         if isinstance(request, ReadPage | WritePage):

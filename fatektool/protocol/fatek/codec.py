@@ -163,6 +163,7 @@ class FatekCodec(ABC):
     stations: ClassVar[range] = range(1, 255)
     numbers: ClassVar[int] = 1
     quiet_chars: ClassVar[float] = 0.0
+    unique_fences: ClassVar[bool] = True
     probe: ClassVar[Request[Any]] = ReadBriefStatus()
 
     def __init__(
@@ -185,6 +186,10 @@ class FatekCodec(ABC):
     @abstractmethod
     def checksum(self, data: bytes) -> bytes:
         """The checksum of what it covers."""
+
+    @abstractmethod
+    def good_answer(self, request: Request[A], asked: bytes, raw: bytes) -> A:
+        """What a good answer says, read without a decoder."""
 
     @abstractmethod
     def error_text(self, code: int) -> str:

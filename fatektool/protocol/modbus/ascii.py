@@ -72,6 +72,7 @@ ASCII: Final = ModbusCodec(
         _encode,
         AsciiDecoder,
         lambda size: 2 * size + 7,
+        lambda raw: raw[:5],
         before=(FramePart("start", 1, always("begins a frame")),),
         behind=(FramePart("LRC", 2, always("right")), FramePart("end", 2, always("CR LF"))),
         checksum=_checksum,

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
-from fatektool.errors import FatektoolError, UsageError
+from fatektool.errors import FatektoolError, FrameError, UsageError
 from fatektool.protocol.commands import ReadDiscretes, ReadRegisters
 from fatektool.protocol.elements import Element
 from fatektool.protocol.modbus import data as modbus_data
@@ -86,6 +86,11 @@ class ModbusCodec:
         return self.framing.quiet_chars
 
     @property
+    def unique_fences(self) -> bool:
+        """False: what was asked before decides which lengths of answers are left."""
+        return False
+
+    @property
     def probe(self) -> Request[Any]:
         """One register, or one discrete where the map has no register."""
         stretch = min(self.map.stretches, key=lambda stretch: stretch.area.of_bits, default=None)
@@ -111,6 +116,16 @@ class ModbusCodec:
     def parse_answer(self, request: Request[A], frame: Frame) -> A:
         """What a frame answers to this request."""
         return modbus_data.parse_answer(request, frame.data, self.map)
+
+    def good_answer(self, request: Request[A], asked: bytes, raw: bytes) -> A:
+        """What a good answer says: its station, function and number are the request's."""
+        framing = self.framing
+        decoder = framing.decoder()
+        decoder.feed(raw)
+        frame = decoder.next_frame()
+        if frame is None or frame.raw != raw or framing.repeated(raw) != framing.repeated(asked):
+            raise FrameError("not the good answer", raw=raw)
+        return self.parse_answer(request, frame)
 
     def encode_answer(self, station: int, request: Request[A], answer: A, number: int = 0) -> bytes:
         """The frame in which a PLC gives this answer."""

@@ -38,6 +38,7 @@ class Framing:
         encode: station, PDU and number as a frame.
         decoder: a new decoder.
         size: length of a frame around a PDU of so many bytes.
+        repeated: the bytes of a request that its good answer repeats: station, function, number.
         before: the parts before the station.
         behind: the parts behind the PDU; none if there is no checksum.
         checksum: of station and PDU, as it is sent; None if there is none.
@@ -55,6 +56,7 @@ class Framing:
     encode: Callable[[int, bytes, int], bytes]
     decoder: Callable[[], Decoder]
     size: Callable[[int], int]
+    repeated: Callable[[bytes], bytes]
     before: tuple[FramePart, ...] = ()
     behind: tuple[FramePart, ...] = ()
     checksum: Callable[[bytes], bytes] | None = None

@@ -54,6 +54,7 @@ RTU: Final = ModbusCodec(
         _encode,
         RtuDecoder,
         lambda size: size + 3,
+        lambda raw: raw[:2],
         behind=(FramePart("CRC", 2, always("right")),),
         checksum=crc_bytes,
         data_bits=8,

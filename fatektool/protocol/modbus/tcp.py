@@ -65,6 +65,7 @@ TCP: Final = ModbusCodec(
         _encode,
         TcpDecoder,
         lambda size: size + TCP_HEADER,
+        lambda raw: raw[:4] + raw[6:8],
         before=(
             FramePart("number", 2, _number),
             FramePart("protocol", 2, always("Modbus")),

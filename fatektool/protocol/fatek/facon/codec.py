@@ -18,6 +18,7 @@ from zlib import adler32
 
 from fatektool.errors import FrameError, PlcRefused, UsageError
 from fatektool.protocol.codec import Frame
+from fatektool.protocol.commands import Command
 from fatektool.protocol.fatek.codec import FatekCodec
 from fatektool.protocol.fatek.facon.data import DATA
 from fatektool.protocol.plc_errors import meaning_of
@@ -34,17 +35,24 @@ FRAMING_BYTES: Final = 8  # STX, station, command, LRC, ETX
 MAX_DATA: Final = 500
 MAX_FRAME: Final = FRAMING_BYTES + MAX_DATA
 LAST_STATION: Final = 0xFF
+_LOOPBACK: Final = Command.LOOPBACK
 
 _PAIRS: Final = [b"%02X" % value for value in range(256)]
+_ENDS: Final = [pair + ETX for pair in _PAIRS]
 _VALUES: Final = {pair: value for value, pair in enumerate(_PAIRS)}
 _FRAME: Final = re.compile(rb"\x02([0-9A-F]{2})([0-9A-F]{2})([^\x03]{0,%d})([^\x03]{2})\x03" % MAX_DATA)
 
 
 def lrc(data: bytes) -> bytes:
     """The checksum of everything from STX to the last data byte, at most a frame, as two hex digits."""
+    return end_of(data)[:2]
+
+
+def end_of(data: bytes) -> bytes:
+    """What follows everything from STX to the last data byte, at most a frame: checksum and ETX."""
     if data.isascii():  # Adler-32's low half is the sum modulo 65521, which such a frame does not reach
-        return _PAIRS[adler32(data, 0) & 0xFF]
-    return _PAIRS[sum(data) & 0xFF]
+        return _ENDS[adler32(data, 0) & 0xFF]
+    return _ENDS[sum(data) & 0xFF]
 
 
 def frame_bytes(station: int, command: int, data: bytes) -> bytes:
@@ -62,10 +70,10 @@ def frame_bytes(station: int, command: int, data: bytes) -> bytes:
         raise UsageError(f"station: expected 0 to {LAST_STATION}, got {station}")
     if len(data) > MAX_DATA:
         raise UsageError(f"frame data: expected at most {MAX_DATA} characters, got {len(data)}")
-    if STX in data or ETX in data:
+    if 2 in data or 3 in data:
         raise UsageError("frame data: STX (02) and ETX (03) cannot stand inside a FACON frame")
     body = b"\x02%b%b%b" % (_PAIRS[station], _PAIRS[command], data)
-    return b"%b%b\x03" % (body, lrc(body))
+    return body + end_of(body)
 
 
 class FaconDecoder(Delimited):
@@ -139,6 +147,15 @@ class FaconCodec(FatekCodec):
     def decoder(self) -> FaconDecoder:
         """A new decoder for one stream."""
         return FaconDecoder()
+
+    def good_answer(self, request: Request[A], asked: bytes, raw: bytes) -> A:
+        """What a good answer says: it begins as its request does, up to the command."""
+        command = request.command
+        if raw[:6] != asked[:5] + b"0" or raw[-3:] != end_of(raw[:-3]) or command == _LOOPBACK:
+            raise FrameError("not the good answer", raw=raw)
+        data = self.data
+        answer: A = data.rows[command].parse_answer(data.notation, request, raw[6:-3])
+        return answer
 
     def checksum(self, data: bytes) -> bytes:
         """The LRC of everything from STX to the last data byte."""

@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, Final, TypeVar
 
 from fatektool.errors import FrameError, UsageError
 from fatektool.protocol.codec import Frame
+from fatektool.protocol.commands import Command
 from fatektool.protocol.fatek.codec import FatekCodec
 from fatektool.protocol.fatek.mseries.crc import crc_bytes
 from fatektool.protocol.fatek.mseries.data import DATA
@@ -46,6 +47,7 @@ MAX_PAYLOAD: Final = 5 + 64 * 7
 MAX_FRAME: Final = FRAMING_BYTES + MAX_PAYLOAD
 LAST_STATION: Final = 0xFF
 _SHORTEST_BEGINNING: Final = 4  # header, ID, length
+_LOOPBACK: Final = Command.LOOPBACK
 
 _BEGINNING: Final = re.compile(
     rb"[\x51\x52](?:\Z|\x10(?:\Z|\x00(?:\Z|[\x02-\xFF])|\x01(?:\Z|[\x00-\x%02X])))" % (MAX_PAYLOAD & 0xFF)
@@ -166,6 +168,16 @@ class MseriesCodec(FatekCodec):
         if frame.raw[0] != RESPONSE:
             raise FrameError("a request (51), expected an answer (52)", raw=frame.raw)
         return self.data.parse_answer(request, frame.data)
+
+    def good_answer(self, request: Request[A], asked: bytes, raw: bytes) -> A:
+        """What a good answer says: its station and command are the request's."""
+        command = request.command
+        head = b"\x52\x10%b%b\0" % ((len(raw) - FRAMING_BYTES).to_bytes(2, "big"), asked[4:6])
+        if raw[:7] != head or raw[-4:] != crc_bytes(raw[2:-4]) + TERMINATOR or command == _LOOPBACK:
+            raise FrameError("not the good answer", raw=raw)
+        data = self.data
+        answer: A = data.rows[command].parse_answer(data.notation, request, raw[7:-4])
+        return answer
 
     def checksum(self, data: bytes) -> bytes:
         """The CRC of length and payload."""
