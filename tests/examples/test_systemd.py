@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+import pytest
+
 from tests.examples.conftest import EXAMPLES, NODE_EXPORTER
 
 if TYPE_CHECKING:
@@ -71,6 +73,7 @@ ls /tmp/fatektool-*.lock > /out/of-a-user
 """
 
 
+@pytest.mark.slow  # a container more, for two places of locks
 def test_a_unit_locks_where_others_do(gateway: Gateway, blocks: Blocks) -> None:
     """Also where ``/run/lock`` is root's alone, as on Arch."""
     ended = gateway.run(

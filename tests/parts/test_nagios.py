@@ -100,6 +100,7 @@ FIGURE = re.compile(LABEL + r"=-?[0-9.]+(?:us|ms|s|%|B|KB|MB|GB|TB|c)?(?:;[-0-9.
 """One figure, as the guidelines for plugins have it: 'label'=value[UOM];[warn];[crit];[min];[max]."""
 
 
+@pytest.mark.slow  # it takes seconds to start and to end
 @needs("nagios4")
 @pytest.mark.timeout(180)
 def test_nagios_reads_state_line_and_figures(place: Path) -> None:

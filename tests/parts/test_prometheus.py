@@ -255,6 +255,7 @@ def test_a_series_that_another_file_has_is_warned_of(cli: Cli, place: Path, plan
 # --- Prometheus ---------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow  # it looks for its targets every 5 s; the rules themselves are tried by promtool above
 @needs("prometheus", "prometheus-node-exporter")
 def test_prometheus_alarms_of_a_plc_that_died_after_its_backup(cli: Cli, place: Path, plant: Hall) -> None:
     assert cli("fleet", "backup", "--dir", "backups", "--prometheus", "prom/backup.prom").code == 1

@@ -11,15 +11,17 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from fatektool.errors import DataError
+from fatektool.errors import DataError, LineError
 from fatektool.files.strict_json import read_json
 from fatektool.files.strict_toml import MOST_PARTS, read_toml
+from fatektool.jobs.programs import rewrite
 from fatektool.jobs.snapshots.snapshot import parse_snapshot
 from fatektool.program.archive import Backup, save_backup
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.state import dump_state, parse_state
 from tests.cli.running import environment, one_line
-from tests.forks.command import COMMAND
+from tests.forks.command import PIPE, Forked
+from tests.forks.shell import path as shell_path
 from tests.guard import GUARD_S
 from tests.plant import snapshot_of
 from tests.program.samples import backup, document, program
@@ -56,19 +58,12 @@ ENDLESS = [
 ]
 
 
-def limited(words: list[str]) -> subprocess.CompletedProcess[str]:
-    """A command that may not take more memory than a small computer has."""
-    limit = f"import resource, runpy; resource.setrlimit(resource.RLIMIT_AS, ({MOST_MEMORY}, {MOST_MEMORY}));"
-    code = f"{limit} runpy.run_module('fatektool', run_name='__main__', alter_sys=True)"
-    return subprocess.run(
-        [sys.executable, "-c", code, *words],
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=GUARD_S,
-        env=environment(),
-    )
+def limited(words: list[str]) -> tuple[int, str, str]:
+    """Exit code and streams of a command that may not take more memory than a small computer has."""
+    limits = {"RLIMIT_AS": MOST_MEMORY}
+    with Forked(words, stdin=subprocess.DEVNULL, stdout=PIPE, stderr=PIPE, limits=limits) as command:
+        out, err = command.communicate(timeout=GUARD_S)
+    return command.wait(), out, err
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are Linux's here")
@@ -79,10 +74,10 @@ def test_a_file_of_a_gibibyte(words: str, place: Path) -> None:
         with (place / name).open("wb") as file:
             file.write(start)
             file.truncate(GIB)
-    done = limited(words.split())
-    assert done.returncode in {2, 5}, done
-    assert one_line(done.stderr)
-    assert not done.stdout
+    code, out, err = limited(words.split())
+    assert code in {2, 5}, err
+    assert one_line(err)
+    assert not out
 
 
 DEEP: dict[str, bytes] = {
@@ -250,31 +245,28 @@ def test_a_name_in_an_inventory_is_refused_unless_it_can_be_a_file(name: str, pl
 @pytest.mark.parametrize(
     "name", ["$(touch pwned).json", "a; touch pwned.json", 'it\'s "mine".json', "-x.json"]
 )
-def test_the_command_that_goes_on_names_the_file_as_one_word(name: str, place: Path) -> None:
+def test_the_command_that_goes_on_names_the_file_as_one_word(
+    name: str, place: Path, cli: Cli, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """It is there to be copied into a shell."""
     save_backup(backup(NEW), place / name)
     build_simulation(ladder_words=64, program=OLD.pages, state=place / "plc.state").save_if_changed()
-    words = ["restore", f"./{name}", "-p", f"sim:{place / 'plc.state'}", "--yes", "--json"]
-    script = (
-        "import sys; from fatektool.jobs.programs import rewrite; from fatektool.errors import LineError\n"
-        "def fail(*_): raise LineError('the line broke')\n"
-        "rewrite.Rewrite._prove = fail\n"
-        "from fatektool.cli import main; main(sys.argv[1:])"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", script, *words],
+
+    def fail(*_: object) -> None:
+        raise LineError("the line broke")
+
+    with monkeypatch.context() as broken:
+        broken.setattr(rewrite.Rewrite, "_prove", fail)
+        done = cli("restore", f"./{name}", "-p", f"sim:{place / 'plc.state'}", "--yes", "--json")
+    assert done.code == 6, done
+    command = done.document("error")["error"]["details"]["command"]
+    assert f"./{name}" in shlex.split(command)
+    finished = subprocess.run(
+        ["bash", "-c", command],
         stdin=subprocess.DEVNULL,
         capture_output=True,
-        text=True,
         check=False,
-        env=environment(),
-    )
-    assert done.returncode == 6, done
-    command = json.loads(done.stdout)["error"]["details"]["command"]
-    assert f"./{name}" in shlex.split(command)
-    again = command.replace("fatektool", shlex.join(COMMAND), 1)
-    finished = subprocess.run(
-        ["bash", "-c", again], stdin=subprocess.DEVNULL, capture_output=True, check=False, env=environment()
+        env=environment(PATH=shell_path()),
     )
     assert finished.returncode == 0, finished
     assert not (place / "pwned").exists()
