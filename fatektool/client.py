@@ -10,7 +10,6 @@ from itertools import accumulate
 from typing import TYPE_CHECKING
 
 from fatektool.errors import DataError, LineError, PlcBusy, PlcError, PlcRefused
-from fatektool.exchange.batch import read_all, read_until_refused, write_all
 from fatektool.protocol.commands import (
     DETAILED_BYTES,
     Control,
@@ -289,6 +288,8 @@ class Plc:
             separated: places in ``pages`` before which a brief status (40) is read, so that the answer to the
                 page before cannot pass for theirs.
         """
+        from fatektool.exchange.batch import read_all  # who reads no program does not load it
+
         if not separated:
             return read_all(self.link, [ReadPage(page) for page in pages], on_page)
         requests: list[Request[Any]] = []
@@ -315,6 +316,8 @@ class Plc:
         Returns:
             The pages before it, and the refusal; None if the PLC refused none.
         """
+        from fatektool.exchange.batch import read_until_refused
+
         return read_until_refused(self.link, [ReadPage(page) for page in pages], on_page)
 
     def write_page(self, page: int, data: bytes) -> None:
@@ -333,4 +336,6 @@ class Plc:
             on_page: is called with the number of pages acknowledged so far; on an error, the page behind
                 those may be written or not.
         """
+        from fatektool.exchange.batch import write_all
+
         write_all(self.link, [WritePage(page, data) for page, data in pages], on_page)

@@ -52,7 +52,6 @@ from fatektool.exchange.receiver import Receiver
 from fatektool.exchange.sender import Sender
 from fatektool.exchange.state import MARGIN, LinkState
 from fatektool.protocol.codec import require_station
-from fatektool.protocol.read_back import read_back
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -211,6 +210,8 @@ class Link:
         Raises:
             LineError: that is not known.
         """
+        from fatektool.protocol.read_back import read_back  # loaded when an answer is lost
+
         question, made = read_back(request)  # type: ignore[arg-type]  # request.writes: its answer is None
         effort = effort or Effort(self.state)
         effort.tries = effort.tries or 1  # it was sent, whoever did

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.errors import DeadlinePassed, GatewayTimeout, NoAnswer, TransportClosed
 from fatektool.exchange.state import MARGIN
-from fatektool.protocol.commands import Command
-from fatektool.protocol.plc_errors import PROGRAM_COMMANDS, PROGRAM_REFUSED
+from fatektool.protocol.commands import PROGRAM_COMMANDS, Command
 
 if TYPE_CHECKING:
     from fatektool.errors import LineError
@@ -140,6 +139,8 @@ class _Report:
             )
         answers = self.effort.plc_answers
         if answers and request.command in PROGRAM_COMMANDS and request.command not in state.answered:
+            from fatektool.protocol.plc_errors import PROGRAM_REFUSED
+
             return PROGRAM_REFUSED
         if "station" in instead:
             return "check --station"

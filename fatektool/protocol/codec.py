@@ -13,7 +13,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol, TypeVar
 
 from fatektool.errors import UsageError
-from fatektool.protocol.plc_errors import PROGRAM_COMMANDS
+from fatektool.protocol.commands import PROGRAM_COMMANDS
 
 if TYPE_CHECKING:
     from collections.abc import Collection

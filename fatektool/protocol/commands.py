@@ -86,6 +86,9 @@ COMMAND_WORDS: Final = {
 }
 
 
+PROGRAM_COMMANDS: Final = frozenset({Command.READ_PAGE, Command.WRITE_PAGE})
+
+
 class Control(IntEnum):
     """What 42 does to a discrete."""
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final, TypeVar
 
 from fatektool.errors import PlcRefused
-from fatektool.protocol.commands import Command, RunStop
+from fatektool.protocol.commands import PROGRAM_COMMANDS, RunStop
 
 if TYPE_CHECKING:
     from fatektool.protocol.commands import Request
@@ -36,7 +36,6 @@ _NEXT: Final = {
     0xA: "'fatektool status' shows how many of each element this PLC has",
 }
 
-PROGRAM_COMMANDS: Final = {Command.READ_PAGE, Command.WRITE_PAGE}
 PROGRAM_REFUSED: Final = (
     "this PLC may not offer its program over the link: the FBs papers list neither 4F nor 50, and a password "
     "may be set; what stays is the engineer's project file (.pdw), which 'fatektool listing' reads"

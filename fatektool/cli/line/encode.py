@@ -70,7 +70,7 @@ def encode_command(
                ELEMENT             4E          TEXT
     4F         PAGE                50          PAGE and 128 bytes in hex
     """  # noqa: D301  # click's mark for lines to be kept is the control character itself
-    if number is not None and protocol != _TCP:
+    if number is not None and codec_named(protocol).numbers == 1:
         raise UsageError(f"--number is for {_TCP}: {protocol} frames have none")
     given = [name for name, value in (("--error", error), ("--data", data)) if value is not None]
     if len(given) > 1 or (given and operands):

@@ -20,7 +20,6 @@ from fatektool.protocol.commands import (
 )
 from fatektool.protocol.elements import KINDS
 from fatektool.protocol.fatek.fields import run_limit
-from fatektool.protocol.plc_errors import asked
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping
@@ -120,7 +119,7 @@ class DataFields:
         loopback = command == Command.LOOPBACK
         code = notation.error_code(data)
         if code is not None and not (loopback and size == 1):
-            raise self.refusal(code, command, asked(request))
+            raise self.refusal(code, command, _asked(request))
         if loopback:
             return data
         if len(data) == size or (command in self.any_size and data):
@@ -130,13 +129,19 @@ class DataFields:
         if command in self.error_optional and len(data) == size - 1:
             return data
         raise FrameError(
-            f"answer to {asked(request)}: expected {size} {notation.unit} of data, got {len(data)}", raw=data
+            f"answer to {_asked(request)}: expected {size} {notation.unit} of data, got {len(data)}", raw=data
         )
 
     def answer_data(self, request: Request[A], answer: A) -> bytes:
         """The data field of the answer to a request."""
         data = self.rows[request.command].answer(self.notation, request, answer)
         return data if request.command == Command.LOOPBACK else self.notation.no_error + data
+
+
+def _asked(request: Request[Any]) -> str:
+    from fatektool.protocol.plc_errors import asked  # the words of errors are loaded with the first
+
+    return asked(request)
 
 
 class FatekCodec(ABC):

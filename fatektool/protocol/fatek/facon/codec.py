@@ -21,7 +21,6 @@ from fatektool.protocol.codec import Frame
 from fatektool.protocol.commands import Command
 from fatektool.protocol.fatek.codec import FatekCodec
 from fatektool.protocol.fatek.facon.data import DATA
-from fatektool.protocol.plc_errors import meaning_of
 from fatektool.protocol.resync import Delimited
 
 if TYPE_CHECKING:
@@ -163,6 +162,8 @@ class FaconCodec(FatekCodec):
 
     def error_text(self, code: int) -> str:
         """An error code in words."""
+        from fatektool.protocol.plc_errors import meaning_of
+
         return meaning_of(code)
 
     def echo_may_pass(self, request: Request[A]) -> bool:

@@ -22,9 +22,9 @@ from fatektool.protocol.commands import (
 from fatektool.protocol.fatek.codec import DataFields
 from fatektool.protocol.fatek.facon.text import TEXT
 from fatektool.protocol.fatek.fields import ROWS, CommandRow, acknowledged, parse_empty
-from fatektool.protocol.plc_errors import refusal
 
 if TYPE_CHECKING:
+    from fatektool.errors import PlcRefused
     from fatektool.protocol.fatek.notation import Notation
     from fatektool.protocol.status import BriefStatus, DetailedStatus
 
@@ -39,6 +39,12 @@ def _detailed(chars: bytes) -> DetailedStatus:
     from fatektool.protocol.status import DetailedStatus  # likewise
 
     return DetailedStatus.parse(TEXT.take_octets(chars))
+
+
+def _refusal(code: int, command: int, asked: str) -> PlcRefused:
+    from fatektool.protocol.plc_errors import refusal  # the words of errors are loaded with the first
+
+    return refusal(code, command, asked)
 
 
 def _page_number(data: bytes) -> int:
@@ -86,7 +92,7 @@ DATA: Final = DataFields(
             lambda w, _, answer: w.octets(answer.raw),
         ),
     },
-    refusal,
+    _refusal,
     "the paper",
     error_optional=frozenset({Command.READ_PAGE, Command.DETAILED_STATUS}),
 )
