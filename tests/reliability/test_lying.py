@@ -170,7 +170,7 @@ def test_a_page_that_never_reads_the_same(place: Path, cli: Cli, door: Door) -> 
     assert cli("backup", "x.json", "-p", door.target).code == 5
     done = cli("restore", "new.json", "--yes", "-p", door.target)
     assert done.code == 5
-    assert "read different programs: page 3" in one_line(done.err)
+    assert "two readings over a clean line differ in page 3" in one_line(done.err)
     assert door.pages == OLD.pages
     assert [path.name for path in place.iterdir()] == ["new.json"]
     save_backup(backup(OLD), place / "old.json")

@@ -97,7 +97,7 @@ def test_a_table_that_needs_a_later_os(fbs: Plant) -> None:
     (fbs.state.parent / "in.toml").write_text(TABLE, encoding="utf-8")
     done = fbs.cli("link", "table", "check", "in.toml")
     assert done.code == 0
-    assert "needs OS 4.22 or later of the PLC" in done.err
+    assert "needs PLC OS 4.22 or later" in done.err
     said = "needs OS 4.22 or later, and this PLC has OS 4.0"
     done = fbs.cli("link", "table", "write", "in.toml", "R100", "--yes")
     assert done.code == 0
