@@ -19,7 +19,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 from fatektool.errors import PlcRefused
-from fatektool.exchange.stream import ask_in_stream
+from fatektool.exchange.stream import ask_in_stream, no_more
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -52,7 +52,10 @@ def read_all(
 
 
 def read_until_refused(
-    link: Link, requests: Sequence[Request[A]], on_answer: Callable[[int], None] | None = None
+    link: Link,
+    requests: Sequence[Request[A]],
+    on_answer: Callable[[int], None] | None = None,
+    more: Callable[[], bool] = no_more,
 ) -> tuple[list[A], PlcRefused | None]:
     """Send reads one after the other, up to the first that is refused; return the proven answers before it.
 
@@ -60,6 +63,8 @@ def read_until_refused(
         link: the link.
         requests: reads.
         on_answer: is called with the number of answers so far.
+        more: adds a read to ``requests``; False if there is none. It is called while the line is busy, for a
+            plan that is made meanwhile.
 
     Returns:
         The answers in order, and the refusal of the request behind them; None if none was refused.
@@ -70,10 +75,10 @@ def read_until_refused(
     batch = _Batch(link, requests, on_answer)
     refusal: PlcRefused | None = None
     try:
-        while len(batch.answers) < len(requests):
-            if len(batch.answers) + 1 < len(requests):
+        while len(batch.answers) < len(requests) or more():
+            if len(batch.answers) + 1 < len(requests) or more():
                 take = batch.answers.append if on_answer is None else batch.take
-                ask_in_stream(link, requests, len(batch.answers), take)
+                ask_in_stream(link, requests, len(batch.answers), take, more)
             if len(batch.answers) < len(requests):
                 batch.ask()
     except PlcRefused as error:

@@ -30,7 +30,18 @@ if TYPE_CHECKING:
 A = TypeVar("A")
 
 
-def ask_in_stream(link: Link, requests: Sequence[Request[A]], first: int, take: Callable[[A], None]) -> bool:
+def no_more() -> bool:
+    """All requests are known."""
+    return False
+
+
+def ask_in_stream(
+    link: Link,
+    requests: Sequence[Request[A]],
+    first: int,
+    take: Callable[[A], None],
+    more: Callable[[], bool] = no_more,
+) -> bool:
     """Send one request after the other from ``requests[first]``, until the end or anything unexpected.
 
     Args:
@@ -38,6 +49,7 @@ def ask_in_stream(link: Link, requests: Sequence[Request[A]], first: int, take: 
         requests: all reads, or all writes.
         first: the one to begin with.
         take: is given each answer, in order.
+        more: adds a read to ``requests`` while the PLC works on the one before; False if there is none.
 
     Returns:
         True if the request behind the last answer was sent, and its outcome is not known.
@@ -49,9 +61,10 @@ def ask_in_stream(link: Link, requests: Sequence[Request[A]], first: int, take: 
     if link.receiver.drop_input() or link.receiver.needs_fence or link.echoes is not False:
         return False
     stream = _Stream(link, take)
-    way = stream.write if requests[first].writes else stream.read
     try:
-        return way(requests, first)
+        if requests[first].writes:
+            return stream.write(requests, first)
+        return stream.read(requests, first, more)
     except TransportError:
         stream.leave_outstanding(waited_for=True)
         return True
@@ -80,19 +93,22 @@ class _Stream(Generic[A]):
         self._encoded: Encoded = (b"", 0)
         self._sent_at = 0.0
 
-    def read(self, requests: Sequence[Request[A]], first: int) -> bool:
+    def read(self, requests: Sequence[Request[A]], first: int, more: Callable[[], bool]) -> bool:
         """Send each request before the answer to the one before is examined; see ``ask_in_stream``."""
-        count = len(requests)
         encode, drain = self._sender.encode, self._state.transport.drain
         following = encode(requests[first])
         whole: bytes | None = None  # the last answer, if it is not examined yet
-        for place in range(first, count):
+        place = first - 1
+        ahead = True
+        while ahead:
+            place += 1
             before = self._encoded
             self._send(requests[place], following)
             if whole is not None and not self._examine(requests[place - 1], before, whole):
                 self.leave_outstanding(waited_for=False)
                 return True
-            if place + 1 < count:
+            ahead = place + 1 < len(requests) or more()
+            if ahead:
                 following = encode(requests[place + 1])
             answer = self._receive(requests[place])
             if answer is None:

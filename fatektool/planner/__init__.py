@@ -28,7 +28,7 @@ least of them is found, and the tests compare it with every plan there is.
 
 from fatektool.planner.atoms import Values
 from fatektool.planner.costs import turnaround_bytes
-from fatektool.planner.reads import plan_reads
+from fatektool.planner.reads import plan_reads, planned_reads
 from fatektool.planner.writes import plan_writes
 
-__all__ = ["Values", "plan_reads", "plan_writes", "turnaround_bytes"]
+__all__ = ["Values", "plan_reads", "plan_writes", "planned_reads", "turnaround_bytes"]

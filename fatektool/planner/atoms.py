@@ -23,7 +23,7 @@ from fatektool.protocol.commands import ReadDiscretes, ReadMixed, ReadRegisters,
 from fatektool.protocol.elements import KINDS, Element, Stretch
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
 
 _WHOLE_32: Final = {"DRT", "DRC"}
 
@@ -82,8 +82,8 @@ class Line:
 
     symbol: str
     stride: int
-    firsts: list[int]
-    lasts: list[int]
+    firsts: Sequence[int]
+    lasts: Sequence[int]
     lowest: int
     bound: int
     exact: bool
@@ -93,7 +93,8 @@ class Line:
 
     def __post_init__(self) -> None:
         self.ends = _stretch_ends(self.firsts, self.lasts, self.stride)
-        self.uneven = len(set(map(sub, self.lasts, self.firsts))) > 1
+        alike = isinstance(self.firsts, range)  # a stretch alone
+        self.uneven = not alike and len(set(map(sub, self.lasts, self.firsts))) > 1
 
     def __len__(self) -> int:
         return len(self.firsts)
@@ -162,11 +163,10 @@ def lines_of(elements: Iterable[Element | Stretch], limits: Mapping[str, int] | 
 
 def _in_order(
     spans: set[tuple[int, int]], stretches: list[tuple[range, range]]
-) -> tuple[list[int], list[int]]:
+) -> tuple[Sequence[int], Sequence[int]]:
     """First and last addresses of all spans of a line; a stretch alone is in order already."""
     if len(stretches) == 1 and not spans:
-        ((firsts, lasts),) = stretches
-        return list(firsts), list(lasts)
+        return stretches[0]
     return _outermost(spans.union(*(zip(*ranges, strict=True) for ranges in stretches)))
 
 
@@ -181,7 +181,9 @@ def _outermost(spans: set[tuple[int, int]]) -> tuple[list[int], list[int]]:
     return firsts, lasts
 
 
-def _stretch_ends(firsts: list[int], lasts: list[int], stride: int) -> list[int]:
+def _stretch_ends(firsts: Sequence[int], lasts: Sequence[int], stride: int) -> list[int]:
+    if isinstance(firsts, range):
+        return [len(firsts)]
     neighbours = zip(islice(firsts, 1, None), lasts, strict=False)
     found = [place for place, (first, before) in enumerate(neighbours, 1) if first - before > stride]
     return [*found, len(firsts)]

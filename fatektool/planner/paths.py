@@ -21,12 +21,13 @@ from math import ceil, inf
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Generator, Iterable, Iterator
 
     from fatektool.protocol.elements import Element
 
 _EPSILON: Final = 1e-6
 _FEW: Final = 32
+_NODES_A_STEP: Final = 8
 
 
 class Run(NamedTuple):
@@ -64,21 +65,10 @@ def least_path(
         base: what each mixed request costs.
         capacity: how many words a mixed request holds.
     """
-    search = _Search(_reachable(end, edges), end, base, capacity)
-    return [edge.piece for edge in search.least()]
-
-
-def _reachable(end: int, edges: Callable[[int], Iterable[Edge]]) -> dict[int, list[Edge]]:
-    """The edges of all nodes that a path from 0 may touch, in order."""
-    graph: dict[int, list[Edge]] = {}
-    todo = [0]
-    while todo:
-        node = todo.pop()
-        if node == end or node in graph:
-            continue
-        graph[node] = list(edges(node))
-        todo += {edge.to for edge in graph[node]}
-    return dict(sorted(graph.items()))
+    search = Search(end, edges, base, capacity)
+    for _ in search.steps():
+        pass
+    return search.pieces
 
 
 class _Priced(NamedTuple):
@@ -97,9 +87,19 @@ class _Label(NamedTuple):
     edge: Edge | None
 
 
-class _Search:
-    def __init__(self, graph: dict[int, list[Edge]], end: int, base: float, capacity: int) -> None:
-        self._graph = graph
+class Search:
+    """The search for the least path, in steps of about a millisecond or less.
+
+    Args:
+        end: as of ``least_path``, as the others are.
+        edges: likewise.
+        base: likewise.
+        capacity: likewise.
+    """
+
+    def __init__(self, end: int, edges: Callable[[int], Iterable[Edge]], base: float, capacity: int) -> None:
+        self._edges = edges
+        self._graph: dict[int, list[Edge]] = {}
         self._end = end
         self._base = base
         self._capacity = capacity
@@ -107,22 +107,44 @@ class _Search:
         self._best: list[Edge] = []
         self._limit = inf
 
-    def least(self) -> list[Edge]:
-        """The least path."""
+    @property
+    def pieces(self) -> list[Run | list[Element]]:
+        """The pieces of the least path, when all steps are done."""
+        return [edge.piece for edge in self._best]
+
+    def steps(self) -> Iterator[None]:
+        """Do the search, a step at a time."""
+        yield from self._reach()
         dear = 1 + self._base + sum(max(edge.cost for edge in edges) for edges in self._graph.values())
         self._shortest(dear)  # no path has fewer words
+        yield
         most = self._shortest(0.0)
+        yield
         self._thin(self._shortest(self._base / self._capacity))
+        yield
         stages = dict.fromkeys(range(ceil(most.words / self._capacity) + 1), 0) if self._graph else {}
         corners: dict[int, _Priced] = {}
         while left := [count for count in stages if self._bound(count) < self._limit - _EPSILON]:
             count = min(left, key=lambda count: (stages[count], self._bound(count)))
             stage = stages[count] = stages[count] + 1
             if stage == 1:
-                corners[count] = self._corner(count)
-            elif self._beat(count, corners[count], _FEW if stage == 2 else inf):
+                corners[count] = yield from self._corner(count)
+            elif (yield from self._beat(count, corners[count], _FEW if stage == 2 else inf)):
                 del stages[count]
-        return self._best
+
+    def _reach(self) -> Iterator[None]:
+        """Ask for the edges of all nodes that a path from 0 may touch, and keep them in order of nodes."""
+        graph = self._graph
+        todo = [0]
+        while todo:
+            node = todo.pop()
+            if node == self._end or node in graph:
+                continue
+            graph[node] = list(self._edges(node))
+            todo += {edge.to for edge in graph[node]}
+            if len(graph) % _NODES_A_STEP == 0:
+                yield
+        self._graph = dict(sorted(graph.items()))
 
     def _bound(self, count: int) -> float:
         """What no path with so many mixed requests can cost less than."""
@@ -171,7 +193,7 @@ class _Search:
             self._graph[node] = kept
         self._graph = {node: edges for node, edges in self._graph.items() if edges}
 
-    def _corner(self, count: int) -> _Priced:
+    def _corner(self, count: int) -> Generator[None, None, _Priced]:
         """The best price for so many mixed requests, or one at which they cannot beat the best path."""
         words = count * self._capacity
         while True:
@@ -179,11 +201,12 @@ class _Search:
             heavy = min((one for one in self._known if one.words > words), key=lambda one: one.words)
             price = (light.cost - heavy.cost) / (heavy.words - light.words)
             found = self._shortest(price)
+            yield
             on_the_chord = found.cost + price * found.words >= light.cost + price * light.words - _EPSILON
             if on_the_chord or self._bound(count) >= self._limit - _EPSILON:
                 return found
 
-    def _beat(self, count: int, corner: _Priced, width: float) -> bool:
+    def _beat(self, count: int, corner: _Priced, width: float) -> Generator[None, None, bool]:
         """Look for a better path with so many mixed requests; True if there is none left.
 
         Of each node's labels no more than ``width`` go on, those that look best: few, or all.
@@ -195,7 +218,9 @@ class _Search:
         labels[self._end] = {}
         labels[0][0] = _Label(0.0, None, None)
         all_seen = True
-        for node, edges in self._graph.items():
+        for number, (node, edges) in enumerate(self._graph.items(), 1):
+            if number % _NODES_A_STEP == 0:
+                yield
             kept = _undominated(labels.pop(node))
             if len(kept) > width:
                 all_seen = False

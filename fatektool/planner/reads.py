@@ -1,20 +1,29 @@
-"""Reads: the requests, and nothing past what the PLC has."""
+"""Reads: the requests, and nothing past what the PLC has.
+
+A plan is made while it is carried out. Runs of registers in the middle of a long stretch are known without a
+search, as there is no other way from their places: they come first, and the search for the rest goes on by a
+step with each of them. So the first request is there at once, and a search among thousands of elements takes
+place while the line is busy. What a plan is does not depend on when it is asked for its requests.
+"""
 
 from __future__ import annotations
 
+from functools import cache
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 from fatektool.planner.atoms import lines_of
 from fatektool.planner.costs import Costs
 from fatektool.planner.edges import Edges
-from fatektool.planner.paths import Run, least_path
+from fatektool.planner.paths import Run, Search
 from fatektool.protocol.commands import ReadDiscretes, ReadMixed, ReadRegisters, Request
 from fatektool.protocol.elements import Element, Stretch
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from fatektool.planner.atoms import Line
+    from fatektool.planner.paths import Edge
     from fatektool.protocol.codec import Codec
 
 
@@ -25,7 +34,18 @@ def plan_reads(
     turnaround: float = 0.0,
     limits: Mapping[str, int] | None = None,
 ) -> list[Request[Any]]:
-    """The requests that read these elements with the least line time.
+    """The requests of ``planned_reads``, all at once."""
+    return list(planned_reads(elements, codec, turnaround=turnaround, limits=limits))
+
+
+def planned_reads(
+    elements: Iterable[Element | Stretch],
+    codec: Codec,
+    *,
+    turnaround: float = 0.0,
+    limits: Mapping[str, int] | None = None,
+) -> Iterator[Request[Any]]:
+    """The requests that read these elements with the least line time, one by one as they are known.
 
     Args:
         elements: of any kind, in any order, also twice; stretches of them are planned much faster.
@@ -38,10 +58,8 @@ def plan_reads(
         UsageError: the protocol cannot name one of the elements.
     """
     costs = Costs(codec, turnaround, writes=False)
-    requests: list[Request[Any]] = []
-    for some in neighbourhoods(elements, codec, writes=False):
-        requests += _plan(lines_of(some, limits or {}), costs)
-    return requests
+    groups = neighbourhoods(elements, codec, writes=False)
+    return chain.from_iterable(_plan(lines_of(some, limits or {}), costs) for some in groups)
 
 
 def neighbourhoods(
@@ -64,16 +82,38 @@ def neighbourhoods(
     return [found[number] for number in sorted(found)]
 
 
-def _plan(lines: list[Line], costs: Costs) -> list[Request[Any]]:
+def _plan(lines: list[Line], costs: Costs) -> Iterator[Request[Any]]:
     edges = Edges(lines, costs)
-    requests: list[Request[Any]] = []
+    edges_of = cache(lambda node: list(edges.of(node)))
+    search = Search(edges.end, edges_of, costs.mixed_base, max(1, costs.mixed_words))
+    steps = search.steps()
+    certain: set[Run] = set()
+    for run in _certain(lines, edges_of):
+        certain.add(run)
+        yield _read(run)
+        next(steps, None)
+    for _ in steps:
+        pass
     mixed: list[Element] = []
-    for piece in least_path(edges.end, edges.of, costs.mixed_base, max(1, costs.mixed_words)):
-        if isinstance(piece, Run):
-            requests.append(_read(piece))
-        else:
+    for piece in search.pieces:
+        if not isinstance(piece, Run):
             mixed += piece
-    return requests + [ReadMixed(tuple(items)) for items in packed(mixed, costs.mixed_words)]
+        elif piece not in certain:
+            yield _read(piece)
+    for items in packed(mixed, costs.mixed_words):
+        yield ReadMixed(tuple(items))
+
+
+def _certain(lines: list[Line], edges_of: Callable[[int], list[Edge]]) -> Iterator[Run]:
+    """The runs of every path: from the beginning of a line on, up to the first place with a choice."""
+    for line in lines:
+        node = line.start
+        while node < line.start + len(line):
+            edge, *others = edges_of(node)
+            if others or not isinstance(edge.piece, Run):
+                break
+            yield edge.piece
+            node = edge.to
 
 
 def _read(run: Run) -> Request[Any]:

@@ -8,14 +8,14 @@ not. All else that was refused together is divided: see ``division.py``.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from itertools import chain
+from itertools import chain, islice
 from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.errors import PlcRefused
 from fatektool.exchange.batch import proven, read_all, read_until_refused
 from fatektool.jobs.elements.division import Division, Refusals
 from fatektool.jobs.elements.extent import ask_limits, excluded, extent_of, neighbours
-from fatektool.planner import Values, plan_reads, turnaround_bytes
+from fatektool.planner import Values, planned_reads, turnaround_bytes
 from fatektool.planner.atoms import Atom, atoms_of
 from fatektool.protocol.commands import (
     ReadDiscretes,
@@ -164,32 +164,42 @@ class _Reader:
         self._answers.append((request, answer))
         self.known.take(request, answer)
 
-    def _plan(self, elements: Sequence[Element | Stretch]) -> list[Request[Any]]:
+    def _plan(self, elements: Sequence[Element | Stretch]) -> Iterator[Request[Any]]:
         codec = self._plc.link.codec
-        return plan_reads(elements, codec, turnaround=turnaround(self._plc), limits=self._limits)
+        return planned_reads(elements, codec, turnaround=turnaround(self._plc), limits=self._limits)
 
     def _missing(self, elements: Iterable[Element]) -> list[Element]:
         return [element for element in elements if element not in self.known]
 
     def _ask(
-        self, requests: Sequence[Request[Any]], *, stop: bool = False
-    ) -> tuple[list[Request[Any]], Sequence[Request[Any]]]:
-        """Ask all, or to the first that is refused; give those that are refused, and the rest."""
+        self, plan: Iterator[Request[Any]], *, stop: bool = False
+    ) -> tuple[list[Request[Any]], list[Request[Any]]]:
+        """Ask all, or to the first that is refused; give those that are refused, and the rest.
+
+        The plan goes on while the line is busy.
+        """
         refused: list[Request[Any]] = []
-        while requests and not (stop and refused):
-            some = requests[:1] if self._fenced else requests
+        requests: list[Request[Any]] = []  # those of the plan that are known and not asked yet
+
+        def more() -> bool:
+            known = len(requests)
+            requests.extend(islice(plan, 1))
+            return len(requests) > known
+
+        while not (stop and refused) and (requests or more()):
             if self._fenced:
-                self._plc.link.fence(some[0])
-            answers, refusal = read_until_refused(self._plc.link, some)
-            for request, answer in zip(some, answers, strict=False):
+                self._plc.link.fence(requests[0])
+                answers, refusal = read_until_refused(self._plc.link, requests[:1])
+            else:
+                answers, refusal = read_until_refused(self._plc.link, requests, more=more)
+            for request, answer in zip(requests, answers, strict=False):
                 self._take(request, answer)
-            rest = requests[len(answers) :]
             if refusal is not None:
-                refused.append(rest[0])
-                rest = rest[1:]
-            self.requests += len(requests) - len(rest)
-            requests = rest
-        return refused, requests
+                refused.append(requests[len(answers)])
+            done = len(answers) + (refusal is not None)
+            self.requests += done
+            del requests[:done]
+        return refused, [*requests, *plan]
 
     def _ask_together(self, elements: Sequence[Element]) -> list[Element]:
         refused, _ = self._ask(self._plan(elements))
