@@ -11,7 +11,7 @@ from fatektool.simulator.build import build_simulation
 from fatektool.simulator.line import SimulatedLine
 from fatektool.simulator.refusal import Refusal, RefusalCode
 from tests.cli.running import check
-from tests.plcs import Simulated, simulated
+from tests.rigs import Simulated, simulated
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -29,7 +29,7 @@ def backup_of_seed(folder: Path, seed: int) -> Path:
     """A backup of another demonstration program."""
     from fatektool.jobs.programs.backup import backup
     from fatektool.program.archive import save_backup
-    from tests.plcs import simulated
+    from tests.rigs import simulated
 
     path = folder / f"seed{seed}.json"
     save_backup(backup(simulated(ladder_words=13184, program_seed=seed).plc), path)

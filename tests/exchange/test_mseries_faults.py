@@ -8,7 +8,7 @@ from fatektool.errors import FatektoolError, LineError
 from fatektool.jobs.elements.reads import read_elements
 from fatektool.protocol.commands import Loopback
 from fatektool.protocol.elements import Element
-from tests.plcs import Simulated, simulated
+from tests.rigs import Simulated, simulated
 
 KINDS = ["drop", "flip", "truncate", "noise", "duplicate", "late", "slow", "wrong-station", "echo"]
 R0 = Element("R", 0)

@@ -26,7 +26,7 @@ from fatektool.protocol.fatek.mseries.codec import MSERIES
 from tests.night import examples
 from tests.planner.exhaustive import wire_bytes
 from tests.planner.sets import named
-from tests.plcs import simulated
+from tests.rigs import simulated
 from tests.rows import each
 
 if TYPE_CHECKING:

@@ -18,8 +18,8 @@ from tests.night import examples, night
 from tests.planner.exhaustive import places_of, wire_bytes
 from tests.planner.plain import merged, one_each
 from tests.planner.sets import TURNAROUNDS, element_sets, named, scattered, side_by_side
-from tests.plcs import Simulated, simulated
 from tests.protocol.decoding import request_of
+from tests.rigs import Simulated, simulated
 from tests.rows import each
 
 AREAS = {

@@ -19,8 +19,8 @@ from fatektool.protocol.fatek.facon.codec import FACON, parse_frame
 from tests.night import examples
 from tests.planner.exhaustive import places_of
 from tests.planner.sets import TURNAROUNDS, apart, element_sets, named, scattered
-from tests.plcs import simulated
 from tests.protocol.decoding import request_of
+from tests.rigs import simulated
 
 if TYPE_CHECKING:
     from fatektool.simulator.memory import SimulatedMemory

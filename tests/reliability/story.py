@@ -27,7 +27,7 @@ from fatektool.jobs.snapshots.write_values import write_values
 from fatektool.jobs.status import read_status
 from fatektool.program.archive import load_backup
 from tests.program.samples import backup as backup_of
-from tests.reliability.rig import DISCRETES, NEAR, NEW, OLD, PAGES, REGISTERS, Rig
+from tests.rigs import DISCRETES, NEAR, NEW, OLD, PAGES, REGISTERS, Rig
 
 if TYPE_CHECKING:
     from collections.abc import Callable

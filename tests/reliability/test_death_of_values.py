@@ -12,8 +12,8 @@ from fatektool.jobs.snapshots.formats import as_json
 from fatektool.jobs.snapshots.snapshot import load_snapshot, raw_of
 from tests.cli.running import Door, served
 from tests.plant import snapshot_of
-from tests.plcs import simulated
 from tests.program.samples import program
+from tests.rigs import simulated
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -13,8 +13,8 @@ from fatektool.protocol.fatek.facon.codec import FACON
 from fatektool.simulator.faults import BIT_ERRORS, FAULT_KINDS, POWER_CUT
 from fatektool.transport.base import LineSettings
 from fatektool.transport.memory import MemoryTransport
-from tests.reliability.rig import Rig
 from tests.reliability.story import JOBS
+from tests.rigs import Rig
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -12,7 +12,7 @@ from fatektool.protocol.fatek.facon.codec import parse_frame
 from fatektool.transport.base import LineSettings
 from tests.protocol.decoding import framed
 from tests.reliability.damage import DAMAGES, count
-from tests.reliability.rig import OLD, Rig
+from tests.rigs import OLD, Rig
 
 ANSWERS = 2000
 BACKUPS = 100

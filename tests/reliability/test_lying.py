@@ -13,8 +13,8 @@ from fatektool.jobs.programs.restore import RestoreOptions, restore
 from fatektool.program.archive import load_backup, save_backup
 from fatektool.simulator.build import build_plcs
 from tests.cli.running import one_line, served
-from tests.jobs.bench import Bench
 from tests.program.samples import backup, changed, program
+from tests.rigs import Bench
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -18,9 +18,9 @@ from fatektool.program.archive import Backup, load_backup, save_backup
 from fatektool.program.headers.families import read_header
 from fatektool.program.image import Program
 from fatektool.program.plc_record import fault_of
-from tests.jobs.bench import READ_PAGE, WRITE_PAGE, Bench, Seen, framed
 from tests.program.samples import backup as backup_of
 from tests.program.samples import document, file_of, header, plc_record, program
+from tests.rigs import READ_PAGE, WRITE_PAGE, Bench, Seen, framed
 
 if TYPE_CHECKING:
     from collections.abc import Callable

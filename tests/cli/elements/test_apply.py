@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fatektool.client import Plc
-    from tests.plcs import Simulated
+    from tests.rigs import Simulated
 
 
 def safety(place: Path) -> list[Path]:

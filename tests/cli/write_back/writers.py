@@ -15,8 +15,8 @@ from fatektool.simulator.line import SimulatedLine
 from fatektool.simulator.plc import SimulatedPlc
 from tests.cli.running import NEW, OLD
 from tests.plant import snapshot_of
-from tests.plcs import simulated
 from tests.program.samples import backup
+from tests.rigs import simulated
 
 if TYPE_CHECKING:
     from collections.abc import Callable

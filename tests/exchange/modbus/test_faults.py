@@ -8,7 +8,7 @@ from fatektool.errors import LineError
 from fatektool.jobs.elements.reads import read_elements
 from fatektool.jobs.elements.writes import write_elements
 from fatektool.protocol.elements import Element
-from tests.plcs import Simulated, simulated
+from tests.rigs import Simulated, simulated
 
 KINDS = ["drop", "truncate", "noise", "duplicate", "late", "slow", "wrong-station", "flip"]
 PROTOCOLS = ["modbus-rtu", "modbus-ascii", "modbus-tcp"]

@@ -14,7 +14,7 @@ from fatektool.jobs.linetest.loopback.run import run_loopback
 from fatektool.protocol.fatek.facon.codec import FACON
 from fatektool.transport.base import LineSettings
 from tests.exchange.peer import Rules, Script, frame, linked, soon
-from tests.plcs import simulated
+from tests.rigs import simulated
 
 
 def findings(plc: Plc, count: int = 240) -> dict[str, Finding]:

@@ -15,7 +15,7 @@ from fatektool.protocol.fatek.facon.codec import FACON
 from fatektool.protocol.line_settings import BAUDS
 from fatektool.transport.base import LineSettings
 from tests.jobs.linetest.test_scan import Adjustable, Line
-from tests.plcs import simulated
+from tests.rigs import simulated
 
 
 def rules(found: Examination) -> set[str]:

@@ -16,7 +16,7 @@ from fatektool.jobs.linetest.loopback.result import ERRORS, LoopbackPlan, Loopba
 from fatektool.jobs.linetest.loopback.run import run_loopback
 from tests.exchange.peer import RUNNING, STATUS, Rules, Script, frame, linked, soon
 from tests.night import examples
-from tests.plcs import simulated
+from tests.rigs import simulated
 
 A = frame("4Eabcd")
 ONE_SIZE = LoopbackPlan(count=1, sizes=(4,), patterns=(Pattern.ONES,))

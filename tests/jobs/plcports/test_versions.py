@@ -11,7 +11,7 @@ from fatektool.plcports.operands import TableOperand
 from fatektool.plcports.rows import Transaction
 from fatektool.plcports.tables import MbusTable
 from fatektool.plcports.versions import INPUT_TYPES, MODBUS_ASCII, is_fbs, needs_of_ports, needs_of_table
-from tests.plcs import simulated
+from tests.rigs import simulated
 
 if TYPE_CHECKING:
     from tests.plant import Plant

@@ -12,8 +12,8 @@ from fatektool.jobs.programs.verify import verify
 from fatektool.jobs.status import read_status
 from fatektool.program.archive import Backup
 from fatektool.simulator.faults import PROBABILITY_KINDS
-from tests.jobs.bench import DETAILED_STATUS, READ_PAGE, WRITE_PAGE, Bench, Seen, framed
 from tests.program.samples import changed, header, program
+from tests.rigs import DETAILED_STATUS, READ_PAGE, WRITE_PAGE, Bench, Seen, framed
 
 PAGES = 8
 

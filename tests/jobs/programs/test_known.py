@@ -15,9 +15,9 @@ from fatektool.jobs.programs.backup import backup
 from fatektool.jobs.programs.known import KnownPages, after_an_equal, apart, neighbours
 from fatektool.jobs.programs.restore import RestoreOptions, plan_restore
 from fatektool.program.archive import Backup, Proof
-from tests.jobs.bench import DETAILED_STATUS, READ_PAGE, Bench, Seen
 from tests.program.samples import backup as backup_of
 from tests.program.samples import changed, program
+from tests.rigs import DETAILED_STATUS, READ_PAGE, Bench, Seen
 
 if TYPE_CHECKING:
     from collections.abc import Callable

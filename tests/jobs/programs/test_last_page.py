@@ -14,10 +14,9 @@ from fatektool.jobs.programs.verify import verify
 from fatektool.program.archive import Backup
 from fatektool.program.image import Program
 from fatektool.simulator.refusal import Refusal
-from tests.jobs.bench import READ_PAGE, Bench
-from tests.plcs import Simulated, simulated
 from tests.program.samples import backup as backup_of
 from tests.program.samples import header, program
+from tests.rigs import READ_PAGE, Bench, Simulated, simulated
 
 if TYPE_CHECKING:
     from fatektool.simulator.plc import SimulatedPlc

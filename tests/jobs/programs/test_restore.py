@@ -18,8 +18,8 @@ from fatektool.errors import (
 )
 from fatektool.jobs.programs.restore import RestoreOptions, RestorePlan, RestoreResult, plan_restore, restore
 from fatektool.program.archive import load_backup
-from tests.jobs.bench import READ_PAGE, RUN_STOP, WRITE_PAGE, Bench, Seen
 from tests.program.samples import backup, changed, header, program
+from tests.rigs import READ_PAGE, RUN_STOP, WRITE_PAGE, Bench, Seen
 
 if TYPE_CHECKING:
     from fatektool.program.image import Program

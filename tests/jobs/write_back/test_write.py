@@ -16,8 +16,8 @@ from fatektool.jobs.write_back.plan import WritePlan
 from fatektool.jobs.write_back.write import write_back
 from fatektool.program.archive import load_backup
 from fatektool.protocol.elements import Element
-from tests.jobs.bench import WRITE_PAGE, Bench, Seen
 from tests.program.samples import program
+from tests.rigs import WRITE_PAGE, Bench, Seen
 
 if TYPE_CHECKING:
     from collections.abc import Callable
