@@ -1,4 +1,4 @@
-"""Words of code: each comes out in one instruction, and all of them come back, from a circuit too."""
+"""Words of code: each comes out in one instruction, and all come back; a circuit of them can be drawn."""
 
 from __future__ import annotations
 
@@ -8,7 +8,12 @@ from fatektool.ladder.circuit.reading import NoCircuit, circuit_of
 from fatektool.ladder.circuit.writing import instructions_of
 from fatektool.ladder.cross_reference import CrossReference
 from fatektool.ladder.decode import encode
+from fatektool.ladder.drawing.text.draw import draw
+from fatektool.ladder.drawing.text.letters import Letters, width_of
+from fatektool.ladder.drawing.text.pen import Pen
 from fatektool.ladder.networks import Code
+
+_PEN = Pen(Letters())
 
 
 def one_input(data: bytes) -> None:
@@ -28,3 +33,4 @@ def one_input(data: bytes) -> None:
             assert circuit.reason.isprintable()
         else:
             assert instructions_of(circuit) == network.instructions
+            assert all(width_of(line) <= 60 for line in draw(circuit, {}, 60, _PEN))

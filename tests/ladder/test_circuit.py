@@ -73,6 +73,7 @@ REASONS = {
     "ORG X0, C0 100": "C0 100 has 2 inputs, and 1 line leads to it",
     "ORG X0, LD X1, FUN 15 (+1) C0": "FUN 15 (+1) C0 has 1 input, and 2 lines lead to it",
     "ORG X0, FUN 15 (+1) C0, OUT Y0": "what FUN 15 (+1) C0 hands on to OUT Y0 is not known",
+    "ORG X0, FUN 08 MOV S:0 D:R1501, OUT Y0, FO 0": "FO 0 does not stand behind its function",
     "ORG X0, FUN 15 (+1) C0, FO 0, OR Y0": "OR Y0 stands behind an output of a function",
 }
 

@@ -176,6 +176,8 @@ class _Reader:
         top = self._stack[-1]
         if top.behind is not None:
             raise _Unclear(f"what {_text(top.behind)} hands on to {_text(leaf)} is not known")
+        if self._box is not None and self._stack[0].lines is not self._box.outputs:
+            self._box = None  # the line goes on behind it
         return top
 
     def _go_on(self, leaf: Leaf) -> None:
@@ -284,7 +286,9 @@ class _Reader:
         (self._function if self._stack and not self._stack[-1].done else self._alone)(leaf)
 
     def _mark(self, leaf: Leaf) -> None:
-        if self._stack:
+        if self._box is not None and self._stack and self._stack[0].lines is not self._box.outputs:
+            self._box.outputs.append(_Draft([leaf], self._box.outputs))
+        elif self._stack:
             self._stack[-1].parts.append(leaf)
         else:
             self._lines.append(_Draft([leaf], self._lines, done=True))

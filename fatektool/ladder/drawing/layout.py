@@ -142,14 +142,14 @@ class _Layout:
         """Coils and boxes, one below the other; give the next free row below, and the row of the last."""
         row = last = place.row
         for part in parts:
-            if _is_store(part):
-                self._run([part], place)
+            if _is_store(part) and part.store not in self._by_name:
+                self._taps[part.store] = place
                 continue
             last = row
             if isinstance(part, Box):
                 row = self._box(part, place._replace(row=row))
             else:
-                assert isinstance(part, Leaf)  # noqa: S101  # a coil
+                assert isinstance(part, Leaf)  # noqa: S101  # a coil, or a store that is drawn as one
                 self._cell(part, place._replace(row=row), ends=True)
                 row += 1
         return row, last
@@ -240,6 +240,8 @@ class _Layout:
         below = row
         for line in box.outputs:
             head = line.parts[0]
+            if isinstance(head, Leaf) and head.role is Role.MARK:
+                continue
             if isinstance(head, Leaf) and head.role is Role.OUTPUT:
                 pin = Pin(max(below, row + head.output), head.output, (head.number,))
                 pins.append(pin)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from random import Random
 from typing import TYPE_CHECKING
 
+import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
@@ -19,9 +21,11 @@ from fatektool.ladder.drawing.text.cells import Writer
 from fatektool.ladder.drawing.text.letters import Letters
 from fatektool.ladder.drawing.text.pen import Pen
 from fatektool.ladder.drawing.text.sheet import Sheet
-from tests.ladder.circuits import circuits, coded
+from fatektool.ladder.networks import Code
+from tests.ladder.circuits import WORDS, circuits, coded
 from tests.ladder.drawing.wiring import RAIL_END, by_characters, by_plan
 from tests.ladder.meaning import by_circuit
+from tests.ladder.vectors import PRINTED, READ
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -134,3 +138,27 @@ def test_the_characters_join_what_the_plan_joins(circuit: Circuit, columns: int)
         sheet = Sheet(each, Writer(Pen(Letters()), {}, 60))
         cuts = list(pairwise(cuts_of(each, sheet.rooms, columns)))
         assert by_characters(sheet, cuts) == by_plan(each)
+
+
+PIECES = [vector.words for vector in (*PRINTED, *READ) if vector.words[0] & 0xF0 not in {0x40, 0x50}]
+OFTEN = ("LD X0", "LD TR 0", "OUT TR 0", "LD TR 1", "OUT TR 1", "FO 0", "ORLD", "ANDLD", "OUT Y0")
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_whatever_the_instructions_are_they_come_back_and_the_drawing_joins_what_they_join(seed: int) -> None:
+    """Rows of any instructions: most break a rule, and some are networks that nobody thinks of."""
+    random = Random(seed)  # noqa: S311  # a fixed seed
+    pieces = [*PIECES, *[WORDS[text] for text in OFTEN] * (len(PIECES) // len(OFTEN))]
+    drawn = 0
+    while drawn < 100:
+        words = [0x0040, *(word for _ in range(random.randrange(1, 25)) for word in random.choice(pieces))]
+        for network in Code.of(words).networks:
+            circuit = circuit_of(network)
+            if not isinstance(circuit, Circuit):
+                continue
+            drawn += 1
+            assert instructions_of(circuit) == network.instructions
+            for plan in (plan_of(circuit), aligned(plan_of(circuit))):
+                sheet = Sheet(plan, Writer(Pen(Letters()), {}, 60))
+                cuts = list(pairwise(cuts_of(plan, sheet.rooms, 60)))
+                assert by_characters(sheet, cuts) == by_plan(plan)

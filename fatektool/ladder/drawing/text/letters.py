@@ -47,7 +47,7 @@ class Letters:
 
 def width_of(text: str) -> int:
     """The columns that a text takes."""
-    return sum(map(_width, text))
+    return len(text) if text.isascii() else sum(map(_width, text))
 
 
 def _width(character: str) -> int:
