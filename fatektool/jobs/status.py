@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fatektool.errors import PlcRefused
-from fatektool.files.times import utc
 from fatektool.protocol.commands import Command, ReadDetailedStatus
 
 if TYPE_CHECKING:
@@ -58,6 +57,8 @@ def read_status(plc: Plc, *, brief: bool = False) -> StatusReport:
     """
     short = plc.brief_status()
     detailed = None if brief else plc.link.ask(ReadDetailedStatus())
+    from fatektool.files.times import utc  # not before there is one
+
     return StatusReport(utc(), plc.target, plc.link.station, plc.link.codec.name, short, detailed)
 
 

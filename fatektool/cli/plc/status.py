@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fatektool.cli.plc.documents import status_document
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.output import Voice, table
 from fatektool.jobs.status import StatusReport, read_status
@@ -27,6 +26,8 @@ def status_command(connection: Connection, voice: Voice, *, brief: bool) -> None
     needs = (Command.BRIEF_STATUS,) if brief else (Command.BRIEF_STATUS, Command.DETAILED_STATUS)
     with connection.open(voice, needs=needs) as plc:
         report = read_status(plc, brief=brief)
+    from fatektool.cli.plc.documents import status_document  # not before there is one
+
     voice.show(status_document(report), table(_rows(report)))
 
 
