@@ -73,7 +73,7 @@ def first_known(paths: Iterable[Path | None], note: Callable[[str], None] = igno
         note: is told why one cannot be read; it is no fault, as everything is read twice then.
     """
     for path in paths:
-        if path is not None and path.exists():
+        if path is not None and path.is_file():  # a pipe that is written to has nothing to read
             try:
                 return known_in(path)
             except FatektoolError as error:

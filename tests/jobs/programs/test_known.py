@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -12,7 +13,7 @@ from hypothesis import strategies as st
 
 from fatektool.errors import DataError
 from fatektool.jobs.programs.backup import backup
-from fatektool.jobs.programs.known import KnownPages, after_an_equal, apart, neighbours
+from fatektool.jobs.programs.known import KnownPages, after_an_equal, apart, first_known, neighbours
 from fatektool.jobs.programs.restore import RestoreOptions, plan_restore
 from fatektool.program.archive import Backup, Proof
 from tests.program.samples import backup as backup_of
@@ -21,6 +22,7 @@ from tests.rigs import DETAILED_STATUS, READ_PAGE, Bench, Seen
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
     from fatektool.program.image import Program
 
@@ -232,6 +234,12 @@ def test_a_restore_reads_the_others_twice() -> None:
     plan = plan_restore(bench.plc, backup_of(wanted), RestoreOptions(), known=known(wanted))
     assert plan.present.proof == Proof("press.json", 7, 1)
     assert requests(bench)[READ_PAGE] == 9
+
+
+def test_a_pipe_is_no_file_to_compare_with(tmp_path: Path) -> None:
+    """``backup >(gzip > x)``: the program goes into it, and nobody writes what could be read."""
+    os.mkfifo(tmp_path / "pipe")
+    assert first_known([None, tmp_path / "missing.json", tmp_path / "pipe"]) is None
 
 
 # --- the order ----------------------------------------------------------------------------------------
