@@ -141,9 +141,12 @@ LEAVES = {words: command for words, command in commands(app) if not isinstance(c
 
 
 def test_every_command_that_has_a_port_is_tried_here() -> None:
-    """A new command belongs into READING or WRITING above; with a port it has --read-only."""
+    """A new command belongs into READING or WRITING above; with a port it has --read-only.
+
+    ``monitor`` needs a program with networks: ``tests/cli/programs/monitor`` tries it.
+    """
     talking = {words for words, command in LEAVES.items() if "port" in {each.name for each in command.params}}
-    assert talking - {"inventory add"} == of_lines(READING + WRITING)
+    assert talking - {"inventory add", "monitor"} == of_lines(READING + WRITING)
     for words in talking:
         assert "read_only" in {each.name for each in LEAVES[words].params}, words
     broadcasting = {
