@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
     from fatektool.protocol.commands import Request
 
-LIMIT: Final = 1.3
+LIMIT: Final = 1.8
 SHORT: Final = 200
 LONG: Final = 1200
 RUNS: Final = 5
