@@ -30,7 +30,15 @@ def ask(order: Any, descriptors: list[int]) -> tuple[_socket.socket, int]:
     head = len(data).to_bytes(_INTS, "big")
     line.sendmsg([head], [(_socket.SOL_SOCKET, _socket.SCM_RIGHTS, passed)])
     line.sendall(data)
-    return line, int.from_bytes(line.recv(_INTS), "big")
+    return line, told(line)
+
+
+def told(line: _socket.socket) -> int:
+    """What the server tells next. That it is gone is no 0, which would be every process if it were killed."""
+    data = line.recv(_INTS)
+    if len(data) != _INTS:
+        raise RuntimeError("the server of forks is gone")
+    return int.from_bytes(data, "big", signed=True)
 
 
 def main() -> None:
@@ -41,7 +49,7 @@ def main() -> None:
     for number in (_signal.SIGINT, _signal.SIGTERM):
         if _signal.getsignal(number) != _signal.SIG_IGN:  # as a shell leaves it in the background
             _signal.signal(number, lambda number, _: posix.kill(child, number))
-    code = int.from_bytes(line.recv(_INTS), "big", signed=True)
+    code = told(line)
     if code < 0:
         _signal.signal(-code, _signal.SIG_DFL)
         posix.kill(posix.getpid(), -code)
