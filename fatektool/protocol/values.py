@@ -1,7 +1,8 @@
 """Raw bits as typed values and back: ``u16``, ``i16``, ``bcd``, ``hex``, ``u32``, ``i32``, ``f32``, ``bool``.
 
-A PLC knows bits alone; what they mean is the program author's. So a type is asked for with the element, and
-without one an element is unsigned, a discrete a bool.
+A PLC knows bits alone; what they mean is the program author's. So a type is asked for with the element.
+Without one a register is a signed number, as the PLC's own functions take it; a word of discretes (``WM8``)
+is unsigned, and a discrete a bool.
 """
 
 from __future__ import annotations
@@ -10,9 +11,12 @@ import math
 import re
 import struct
 from enum import Enum
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import DataError, UsageError
+
+if TYPE_CHECKING:
+    from fatektool.protocol.elements import ElementKind
 
 Value = bool | int | float | str
 
@@ -54,9 +58,14 @@ _LONGEST: Final = 1000
 _REAL: Final = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?", re.ASCII)
 
 
-def default_type(bits: int) -> ValueType:
-    """The type of an element of so many bits when none is asked for."""
-    return {1: ValueType.BOOL, 16: ValueType.U16, 32: ValueType.U32}[bits]
+def default_type(kind: ElementKind) -> ValueType:
+    """The type of an element of this kind when none is asked for."""
+    if kind.bits == 1:
+        return ValueType.BOOL
+    of_discretes = "W" in kind.symbol
+    if kind.bits == 16:
+        return ValueType.U16 if of_discretes else ValueType.I16
+    return ValueType.U32 if of_discretes else ValueType.I32
 
 
 def decode(raw: int, kind: ValueType, bits: int) -> Value:

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fatektool.errors import DataError, UsageError
+from fatektool.protocol.elements import KINDS
 from fatektool.protocol.values import NUMBERS, Value, ValueType, decode, default_type, encode
 from tests.rows import each
 
@@ -29,9 +30,17 @@ def test_the_types() -> None:
     assert {U16, I16, U32, I32, F32, BCD} == NUMBERS
 
 
-@pytest.mark.parametrize(("bits", "kind"), [(1, BOOL), (16, U16), (32, U32)])
-def test_the_type_when_none_is_asked_for(bits: int, kind: ValueType) -> None:
-    assert default_type(bits) is kind
+@each(
+    ("symbols", "kind"),
+    [
+        ("X Y M S T C", BOOL), ("R D F RT RC", I16), ("DR DD DF DRT DRC", I32),
+        ("WX WY WM WS WT WC", U16), ("DWX DWY DWM DWS DWT DWC", U32),
+    ],
+)  # fmt: skip
+def test_the_type_when_none_is_asked_for(symbols: str, kind: ValueType) -> None:
+    """A register is a signed number, a word of discretes a row of bits."""
+    for symbol in symbols.split():
+        assert default_type(KINDS[symbol]) is kind
 
 
 # --- both ways ------------------------------------------------------------------------------------

@@ -93,7 +93,7 @@ def _item(named: Element, kind: ValueType | None, *, wide: bool) -> Item:
         fitting = ", ".join(kind.value for kind in ValueType if _fits(kind, bits))
         width = "1 bit" if bits == 1 else f"{bits} bits"
         raise UsageError(f"{named}: {kind.value} does not fit {width}: expected {fitting}")
-    return Item(str(named), element, kind or default_type(bits))
+    return Item(str(named), element, kind or default_type(element.kind))
 
 
 def _fits(kind: ValueType, bits: int) -> bool:

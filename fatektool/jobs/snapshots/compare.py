@@ -7,7 +7,8 @@ from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
+    from typing import Any
 
     from fatektool.jobs.snapshots.snapshot import Snapshot
     from fatektool.protocol.values import Value
@@ -48,9 +49,22 @@ def compare_snapshots(
             continue
         one, other = a.values.get(key), b.values.get(key)
         absent = "a" if key not in a.values else "b" if key not in b.values else None
-        if absent or not _alike(one, other, tolerance):
+        if absent or not (
+            _alike(one, other, tolerance) or _same_bits(a.elements.get(key), b.elements.get(key))
+        ):
             changes.append(ValueChange(key, one, other, absent))
     return changes
+
+
+def _same_bits(a: Mapping[str, Any] | None, b: Mapping[str, Any] | None) -> bool:
+    """True for the same bits of one element that are only read as another type: 65535 as u16, -1 as i16."""
+    if a is None or b is None or a.get("raw") is None or a.get("type") == b.get("type"):
+        return False
+    return _without_type(a) == _without_type(b)
+
+
+def _without_type(part: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in part.items() if name not in {"type", "comment"}}
 
 
 def _alike(a: Value | None, b: Value | None, tolerance: float) -> bool:

@@ -212,6 +212,6 @@ def items_in(stretches: Iterable[Stretch]) -> list[SpecItem]:
     return [
         SpecItem(Item(str(element), element, kind))
         for stretch in stretches
-        for kind in (default_type(stretch.first.kind.bits),)
+        for kind in (default_type(stretch.first.kind),)
         for element in stretch
     ]

@@ -28,7 +28,7 @@ def test_every_kind_and_type(plant: Plant) -> None:
     )
     document = plant.json("read", "read", *words.split())
     assert document["values"] == {
-        "R0": 65535, "R1": -2, "R2": 1234, "R3": "BEEF", "DR4": 4294967295, "DR6": -3, "D8": -1.5,
+        "R0": -1, "R1": -2, "R2": 1234, "R3": "BEEF", "DR4": -1, "DR6": -3, "D8": -1.5,
         "WM0": 0x5555, "DWM16": "00000001", "Y0": True, "Y1": True, "Y2": True, "S0": False, "T1": True,
         "C1": True, "RT3": 7, "RC3": 8, "DRC10": 70000, "D0": 305419896, "D2": 99,
         "M0": True, "M1": False, "M2": True, "M3": False, "X0": False, "X1": False,
@@ -44,7 +44,7 @@ def test_every_kind_and_type(plant: Plant) -> None:
     [
         ["R0:f32:f32"], ["R0:u8"], ["R70000"], ["R0-X5"], ["R9-R0"], ["R0:0"], ["R0:100001"],
         ["R65535:2"], ["WX4"], ["WX8:u32:2"], ["DWX9"], ["X0:i16"], ["X0:hex"], ["R0:bool"], ["DR0:u16"],
-        ["WX0-WX8"], ["D0-D5:u32"], ["DR65535"], ["R65535:u32"], ["Q5"], ["R"], [""], ["R0", "R0:i16"],
+        ["WX0-WX8"], ["D0-D5:u32"], ["DR65535"], ["R65535:u32"], ["Q5"], ["R"], [""], ["R0", "R0:u16"],
         ["R-1"],
         ["R0\n"], ["R0 R1"], ["R\u0661"], ["--", "-R1"], ["R0:1:i16:2"], ["X10000"],
     ],

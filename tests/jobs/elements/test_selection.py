@@ -20,25 +20,25 @@ def shown(items: list[Item]) -> list[str]:
 @each(
     ("text", "items"),
     [
-        ("R12", ["R12 R12 u16"]),
-        ("r0012", ["R12 R12 u16"]),
+        ("R12", ["R12 R12 i16"]),
+        ("r0012", ["R12 R12 i16"]),
         (" X16 ", ["X16 X16 bool"]),
-        ("DR2", ["DR2 DR2 u32"]),
+        ("DR2", ["DR2 DR2 i32"]),
         ("DWM0", ["DWM0 DWM0 u32"]),
         ("WM8", ["WM8 WM8 u16"]),
-        ("DRC3", ["DRC3 DRC3 u32"]),
-        ("R0-R2", ["R0 R0 u16", "R1 R1 u16", "R2 R2 u16"]),
-        ("R0-2", ["R0 R0 u16", "R1 R1 u16", "R2 R2 u16"]),
-        ("r0-R002", ["R0 R0 u16", "R1 R1 u16", "R2 R2 u16"]),
-        ("R5-R5", ["R5 R5 u16"]),
-        ("R5:1", ["R5 R5 u16"]),
-        ("R5:0002", ["R5 R5 u16", "R6 R6 u16"]),
+        ("DRC3", ["DRC3 DRC3 i32"]),
+        ("R0-R2", ["R0 R0 i16", "R1 R1 i16", "R2 R2 i16"]),
+        ("R0-2", ["R0 R0 i16", "R1 R1 i16", "R2 R2 i16"]),
+        ("r0-R002", ["R0 R0 i16", "R1 R1 i16", "R2 R2 i16"]),
+        ("R5-R5", ["R5 R5 i16"]),
+        ("R5:1", ["R5 R5 i16"]),
+        ("R5:0002", ["R5 R5 i16", "R6 R6 i16"]),
         ("X8:3", ["X8 X8 bool", "X9 X9 bool", "X10 X10 bool"]),
         ("WY8:2", ["WY8 WY8 u16", "WY24 WY24 u16"]),
         ("WY8-WY24", ["WY8 WY8 u16", "WY24 WY24 u16"]),
         ("DWM0:2", ["DWM0 DWM0 u32", "DWM32 DWM32 u32"]),
-        ("DR0:2", ["DR0 DR0 u32", "DR2 DR2 u32"]),
-        ("DRT1-DRT5", ["DRT1 DRT1 u32", "DRT3 DRT3 u32", "DRT5 DRT5 u32"]),
+        ("DR0:2", ["DR0 DR0 i32", "DR2 DR2 i32"]),
+        ("DRT1-DRT5", ["DRT1 DRT1 i32", "DRT3 DRT3 i32", "DRT5 DRT5 i32"]),
         ("R12:i16", ["R12 R12 i16"]),
         ("R12:I16", ["R12 R12 i16"]),
         ("R12:2:i16", ["R12 R12 i16", "R13 R13 i16"]),
@@ -158,18 +158,18 @@ def test_range_and_count_are_two_ways_to_say_one_thing(symbol: str, place: int, 
 
 
 def test_the_same_twice_is_one() -> None:
-    assert shown(parse_items(["R1", "R0-R2", "r1"])) == ["R1 R1 u16", "R0 R0 u16", "R2 R2 u16"]
+    assert shown(parse_items(["R1", "R0-R2", "r1"])) == ["R1 R1 i16", "R0 R0 i16", "R2 R2 i16"]
     assert parse_items([]) == []
 
 
 def test_one_element_as_two_types() -> None:
     with pytest.raises(UsageError) as caught:
         parse_items(["D4:f32", "D4"])
-    assert caught.value.message == "D4 is asked for twice, as f32 and u16"
+    assert caught.value.message == "D4 is asked for twice, as f32 and i16"
 
 
 def test_elements_that_share_registers_may_be_read() -> None:
-    assert shown(parse_items(["R0", "DR0", "R1:f32"])) == ["R0 R0 u16", "DR0 DR0 u32", "R1 DR1 f32"]
+    assert shown(parse_items(["R0", "DR0", "R1:f32"])) == ["R0 R0 i16", "DR0 DR0 i32", "R1 DR1 f32"]
 
 
 def test_too_many() -> None:

@@ -13,7 +13,7 @@ from fatektool.errors import DataError, FatektoolError
 from fatektool.jobs.snapshots import snapshot as snapshot_file
 from fatektool.jobs.snapshots.compare import compare_snapshots
 from fatektool.jobs.snapshots.formats import as_json, as_ndjson
-from fatektool.jobs.snapshots.snapshot import load_snapshot, parse_snapshot
+from fatektool.jobs.snapshots.snapshot import Snapshot, load_snapshot, parse_snapshot
 from tests.plant import error_of, snapshot_of
 from tests.rows import each
 
@@ -117,6 +117,20 @@ def test_any_damage_is_an_error_of_the_project_or_harmless(at: int, put: bytes, 
         assert error.exit_code == 5  # noqa: PT017  # any other error fails the test
     else:
         assert not compare_snapshots(found, found)
+
+
+def of_r0(kind: str, raw: str, value: object) -> Snapshot:
+    document = snapshot_of(f"R0:{kind}").document()
+    document["values"]["R0"] = value
+    document["elements"]["R0"] |= {"raw": raw}
+    return parse_snapshot(json.dumps(document).encode(), "x")
+
+
+def test_another_type_of_the_same_bits_is_no_change() -> None:
+    """A register that was read as a number without sign before is not reported as changed."""
+    assert not compare_snapshots(of_r0("u16", "FFFF", 65535), of_r0("i16", "FFFF", -1))
+    assert compare_snapshots(of_r0("u16", "FFFF", 65535), of_r0("i16", "FFFE", -2))
+    assert compare_snapshots(of_r0("i16", "FFFF", -1), of_r0("i16", "FFFE", -2))
 
 
 @given(st.binary(max_size=100))

@@ -88,7 +88,7 @@ def test_groups() -> None:
         ("[[item]]", "item 1: expected element"),
         ("[[item]]\nelement='R0'\ncolour='red'", "unknown key 'colour'"),
         ("[[item]]\nelement='R0'\n[[item]]\nelement='Q1'", "item 2"),
-        ("[[item]]\nelement='R0'\n[[item]]\nelement='R0:i16'", "item 2: 'R0' is there already"),
+        ("[[item]]\nelement='R0'\n[[item]]\nelement='R0:u16'", "item 2: 'R0' is there already"),
         ("[[item]]\nelement='R0'\nname=''", "name"),
         ('[[item]]\nelement="R0"\nname="a\\nb"', "name"),
         ("[[item]]\nelement='R0'\nscale='x'", "scale"),
