@@ -79,10 +79,12 @@ class SafetySnapshot:
         except FatektoolError:
             return None  # a damaged file cannot be written back, and is no reason to stop
         now = _atoms(self.plan.present)
-        before: dict[Atom, int] = {}
+        left: dict[Atom, int] = {}  # not what is written already: of a 32-bit value that may be a half
         for change in self.plan.changes:
-            before |= parts_of(change.element, change.before)
-        return self.earlier if now.keys() <= old.keys() and before.items() <= old.items() else None
+            after = parts_of(change.element, change.after)
+            before = parts_of(change.element, change.before)
+            left |= {atom: bits for atom, bits in before.items() if bits != after[atom]}
+        return self.earlier if now.keys() <= old.keys() and left.items() <= old.items() else None
 
     def save(self, folder: Path) -> Path:
         """Write a new file; it is on disk when this returns.
