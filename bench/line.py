@@ -55,6 +55,7 @@ class Bench:
         for name, pages in programs.items():
             changed = replace(first, program=Program(first.program.ladder_words, pages))
             Path(self.files[name]).write_bytes(changed.to_bytes())
+        self.folder = folder
         self.backup = str(folder / "backup.json")
         self.snapshot = str(folder / "snapshot.json")
 
@@ -93,6 +94,8 @@ class Bench:
             for _ in range(RUNS.get(self.baud, 1)):
                 if name == "backup, first":
                     Path(self.backup).unlink(missing_ok=True)
+                for copy in self.folder.glob("*safety*"):  # pages that it has would be read once
+                    copy.unlink()
                 tools.append(tool(*words, "-p", self.target, "--baud", str(self.baud)))
                 bares.append(bare(self.target, todo))
             wire_s = exchanges.wire_bytes(todo) * BITS / self.baud

@@ -16,6 +16,7 @@ from fatektool.errors import UsageError
 from fatektool.protocol.registry import CODECS
 from fatektool.protocols import DEFAULT, PROTOCOLS
 from fatektool.transport.base import BAUD, FORMAT, LineSettings
+from fatektool.value import Value
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -45,8 +46,8 @@ def _checked(check: Check[Any], *, default: Any) -> Any:
     return field(default=default, metadata={"check": check})
 
 
-@dataclass(frozen=True, slots=True)
-class PlcAddress:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class PlcAddress(Value):
     """Where a PLC is and how it is asked.
 
     Attributes:

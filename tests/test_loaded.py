@@ -189,7 +189,6 @@ def end(*_):
     __import__("os")._exit(0)
 TcpTransport.write = end
 from fatektool.cli import run
-from tests.rows import each
 run(["status", "-p", "{target}"])
 """
 

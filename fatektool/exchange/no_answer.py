@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 from fatektool.errors import DeadlinePassed, GatewayTimeout, NoAnswer, TransportClosed
 from fatektool.exchange.state import MARGIN
 from fatektool.protocol.commands import PROGRAM_COMMANDS, Command
+from fatektool.value import Value
 
 if TYPE_CHECKING:
     from fatektool.errors import LineError
@@ -84,8 +85,8 @@ def no_answer(
     return _Report(state, receiver, request, gateway, effort, unknown).error()
 
 
-@dataclass(frozen=True, slots=True)
-class _Report:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class _Report(Value):
     state: LinkState
     receiver: Receiver
     request: Request[Any]

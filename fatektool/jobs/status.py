@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING
 
 from fatektool.errors import PlcRefused
 from fatektool.protocol.commands import Command, ReadDetailedStatus
+from fatektool.value import Value
 
 if TYPE_CHECKING:
     from fatektool.client import Plc
     from fatektool.protocol.status import BriefStatus, DetailedStatus, RawStatus, StatusFlags, System
 
 
-@dataclass(frozen=True, slots=True)
-class StatusReport:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class StatusReport(Value):
     """A PLC's status.
 
     Attributes:

@@ -24,6 +24,7 @@ from enum import IntEnum
 from typing import TYPE_CHECKING, ClassVar, Final, Generic, TypeVar
 
 from fatektool.errors import UsageError
+from fatektool.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -98,7 +99,7 @@ class Control(IntEnum):
     RESET = 4
 
 
-class Request(Generic[A]):
+class Request(Value, Generic[A]):
     """One thing asked of a PLC, and the type ``A`` of its answer.
 
     ``writes`` is True when the request changes something, so that it must not be sent twice blindly.
@@ -109,14 +110,14 @@ class Request(Generic[A]):
     writes: ClassVar[bool] = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ReadBriefStatus(Request["BriefStatus"]):
     """40: three status bytes."""
 
     command: ClassVar[Command] = Command.BRIEF_STATUS
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class RunStop(Request[None]):
     """41: RUN or STOP."""
 
@@ -125,7 +126,7 @@ class RunStop(Request[None]):
     writes: ClassVar[bool] = True
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ControlDiscrete(Request[None]):
     """42: disable, enable, set or reset one discrete."""
 
@@ -138,7 +139,7 @@ class ControlDiscrete(Request[None]):
         _discrete(self.element, self.command)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ReadDisabled(Request[tuple[bool, ...]]):
     """43: for 1 to 256 consecutive discretes, True where one is **disabled**."""
 
@@ -150,7 +151,7 @@ class ReadDisabled(Request[tuple[bool, ...]]):
         _discrete_run(self.first, self.count, self.command)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ReadDiscretes(Request[tuple[bool, ...]]):
     """44: the state of consecutive discretes: 1 to 256 in FACON."""
 
@@ -162,7 +163,7 @@ class ReadDiscretes(Request[tuple[bool, ...]]):
         _discrete_run(self.first, self.count, self.command)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class WriteDiscretes(Request[None]):
     """45: set the state of consecutive discretes: 1 to 256 in FACON."""
 
@@ -175,7 +176,7 @@ class WriteDiscretes(Request[None]):
         _discrete_run(self.first, len(self.values), self.command)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ReadRegisters(Request[tuple[int, ...]]):
     """46: consecutive words, unsigned: in FACON 1 to 64 of 16 bits or 1 to 32 of 32 bits."""
 
@@ -187,7 +188,7 @@ class ReadRegisters(Request[tuple[int, ...]]):
         _register_run(self.first, self.count, self.command)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class WriteRegisters(Request[None]):
     """47: write consecutive words, unsigned: in FACON 1 to 64 of 16 bits or 1 to 32 of 32 bits."""
 
@@ -202,7 +203,7 @@ class WriteRegisters(Request[None]):
             _fits(self.first.after(place), value)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ReadMixed(Request[tuple[int, ...]]):
     """48: elements of any kind, at most 64 words in all; a discrete reads as 0 or 1."""
 
@@ -213,7 +214,7 @@ class ReadMixed(Request[tuple[int, ...]]):
         _mixed(self.elements, MAX_READ_WORDS, self.command)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class WriteMixed(Request[None]):
     """49: elements of any kind with their values, at most 32 words in all."""
 
@@ -227,7 +228,7 @@ class WriteMixed(Request[None]):
             _fits(element, value)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Loopback(Request[bytes]):
     """4E: the PLC answers the very data it was sent, 0 to 256 characters."""
 
@@ -239,7 +240,7 @@ class Loopback(Request[bytes]):
             raise UsageError(f"loopback: expected at most {MAX_LOOPBACK} characters, got {len(self.data)}")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ReadPage(Request[bytes]):
     """4F: one page of the program, 64 words, high byte first [E:page-order], as 128 bytes. Page 0: header."""
 
@@ -250,7 +251,7 @@ class ReadPage(Request[bytes]):
         _page(self.page)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class WritePage(Request[None]):
     """50: write one page of the program, 128 bytes."""
 
@@ -265,7 +266,7 @@ class WritePage(Request[None]):
             raise UsageError(f"program page {self.page}: expected {PAGE_BYTES} bytes, got {len(self.data)}")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ReadDetailedStatus(Request["DetailedStatus | RawStatus"]):
     """53: 64 status bytes, the ladder size among them; raw bytes where no paper says what they mean."""
 

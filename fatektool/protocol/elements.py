@@ -19,13 +19,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import UsageError
+from fatektool.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 
-@dataclass(frozen=True, slots=True)
-class ElementKind:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class ElementKind(Value):
     """A kind of element.
 
     Attributes:
@@ -133,8 +134,8 @@ class Element:
         return cls(match[1].upper(), int(match[2]))
 
 
-@dataclass(frozen=True, slots=True)
-class Stretch:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Stretch(Value):
     """Neighbours of one kind, so many from a first one on: all registers R of a PLC without naming each.
 
     Raises:

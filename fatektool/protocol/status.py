@@ -23,6 +23,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from fatektool.errors import FrameError
+from fatektool.value import Value
 
 MODELS: Final = {
     0xFF: "FB, 8K steps",
@@ -41,8 +42,8 @@ DETAILED: Final = struct.Struct(">4B12H36x")
 """The layouts of 40 and 53; the 36 bytes at the end are reserved."""
 
 
-@dataclass(frozen=True, slots=True)
-class StatusFlags:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class StatusFlags(Value):
     """Status byte 1, the same in 40 and 53, bit 0 first; ``rom_pack`` is an M-series PLC's memory card."""
 
     running: bool
@@ -68,8 +69,8 @@ class StatusFlags:
         return {name: getattr(self, name) for name in self.__slots__}
 
 
-@dataclass(frozen=True, slots=True)
-class BriefStatus:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class BriefStatus(Value):
     """The answer to 40.
 
     Attributes:
@@ -113,8 +114,8 @@ class BriefStatus:
         return bytes([self.status1, self.status2, self.status3])
 
 
-@dataclass(frozen=True, slots=True)
-class System:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class System(Value):
     """What a PLC is and has, bytes 2 to 28 of 53: the part of it that does not change by itself."""
 
     unit_type: int
@@ -153,8 +154,8 @@ class System:
         return found
 
 
-@dataclass(frozen=True, slots=True)
-class DetailedStatus:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class DetailedStatus(Value):
     """The answer to 53.
 
     Attributes:
@@ -183,8 +184,8 @@ class DetailedStatus:
         return cls(StatusFlags.parse(flags), system, bytes(data), assumed)
 
 
-@dataclass(frozen=True, slots=True)
-class RawStatus:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class RawStatus(Value):
     """An answer to 53 in a layout that no paper describes."""
 
     raw: bytes

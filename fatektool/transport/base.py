@@ -19,6 +19,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from fatektool.checks import OneOf, WholeNumber
+from fatektool.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -52,8 +53,8 @@ BAUD: Final = WholeNumber(50, 4_000_000)
 FORMAT: Final = LineFormat()
 
 
-@dataclass(frozen=True, slots=True)
-class LineSettings:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class LineSettings(Value):
     """A serial line's speed and format; the factory setting is 9600 7E1 [E:factory].
 
     Raises:

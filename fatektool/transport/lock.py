@@ -32,6 +32,7 @@ from typing import TYPE_CHECKING, Final
 
 from fatektool.callbacks import ignore
 from fatektool.errors import PortBusy, UsageError
+from fatektool.value import Value
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -77,8 +78,8 @@ def _own_folder() -> str:
     return gettempdir()
 
 
-@dataclass(frozen=True, slots=True)
-class Holder:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Holder(Value):
     """Who has a lock, as far as its file tells.
 
     Attributes:
