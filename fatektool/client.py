@@ -114,19 +114,23 @@ class Plc:
         if self._lent is not None:
             self._lent.take()
 
-    def lend(self, seconds: float, *, broken: bool = False) -> None:
+    def lend(
+        self, seconds: float, *, broken: bool = False, sleep: Callable[[float], object] | None = None
+    ) -> None:
         """Wait. A process that waits for the line gets it meanwhile, until ``take``.
 
         Args:
             seconds: how long to wait.
             broken: True to open the line anew in any case.
+            sleep: waits; it may raise to end the waiting. None for ``time.sleep``.
         """
+        sleep = sleep or time.sleep
         if self._lent is None:
-            time.sleep(seconds)
+            sleep(seconds)
             return
         if broken:
             self._lent.give_back()
-        self._lent.lend(seconds)
+        self._lent.lend(seconds, sleep)
 
     def close(self) -> None:
         """Close the line. Closing it twice is allowed."""

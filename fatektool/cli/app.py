@@ -17,7 +17,7 @@ JOBS: Final[dict[str, dict[str, Subcommand]]] = {
         "inspect": Subcommand("programs.inspect", "Show and check what a backup holds; no PLC."),
         "listing": Subcommand("programs.listing", "List a program in the vendor's mnemonics; no PLC."),
         "xref": Subcommand("programs.xref", "Show who reads and who writes each element; no PLC."),
-        "monitor": Subcommand("programs.monitor.command", "Say why an element is on or off, by the program."),
+        "monitor": Subcommand("programs.monitor.command", "Show networks live; say why an element is off."),
         "diff": Subcommand("programs.diff", "Compare two backups; no PLC."),
     },
     "The PLC": {

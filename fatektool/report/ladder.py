@@ -21,6 +21,7 @@ from fatektool.report.page import note
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from fatektool.ladder.drawing.plan import Net
     from fatektool.ladder.drawing.text.cells import SignText
     from fatektool.ladder.networks import Network
 
@@ -128,12 +129,12 @@ class _Picture:
         )
         return tag("div", drawn, class_="scroll", role="region", aria_label=title, tabindex="0")
 
-    def across(self, line: int, first: int, last: int) -> None:
+    def across(self, line: int, first: int, last: int, net: Net | None) -> None:  # noqa: ARG002
         """A wire along a line."""
         if first < last:
             self._wires.append(f"M{self._x(first)} {self._y(line)}H{self._x(last)}")
 
-    def down(self, column: int, first: int, last: int) -> None:
+    def down(self, column: int, first: int, last: int, net: Net | None) -> None:  # noqa: ARG002
         """A wire down a column."""
         self._wires.append(f"M{self._x(column)} {self._y(first)}V{self._y(last)}")
 

@@ -73,8 +73,14 @@ class LentTransport(Transport):
             self._inner = self._lock = None
             self._stack.close()
 
-    def lend(self, seconds: float) -> None:
-        """Wait, and let others have the line meanwhile if they want it; ``take`` it again behind this."""
+    def lend(self, seconds: float, sleep: Callable[[float], object] | None = None) -> None:
+        """Wait, and let others have the line meanwhile if they want it; ``take`` it again behind this.
+
+        Args:
+            seconds: how long to wait.
+            sleep: waits; it may raise to end the waiting. None for ``time.sleep``.
+        """
+        sleep = sleep or time.sleep
         if seconds >= LONG_PAUSE_S:
             self.give_back()
         while True:
@@ -83,7 +89,7 @@ class LentTransport(Transport):
             if seconds <= 0:
                 return
             step = seconds if self._lock is None else min(seconds, _LOOK_S)
-            time.sleep(step)
+            sleep(step)
             seconds -= step
 
     def _hand_over(self, lock: PortLock) -> None:

@@ -119,7 +119,7 @@ def test_watch_whose_reader_has_seen_enough(press: Press) -> None:
 
 
 def test_watch_over_a_line_that_dies(press: Press, cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("fatektool.cli.elements.watch.time.sleep", lambda _: None)
+    monkeypatch.setattr("time.sleep", lambda _: None)
     cut_after(monkeypatch, 12)
     done = cli("watch", "R0", "--retries", "0", "--timeout", "0.05", "--report", "x.html", "--force")
     assert done.code == 3
@@ -133,7 +133,7 @@ def test_watch_over_a_line_that_dies(press: Press, cli: Cli, monkeypatch: pytest
 
 
 def test_watch_over_a_line_that_comes_back(press: Press, cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("fatektool.cli.elements.watch.time.sleep", lambda _: None)
+    monkeypatch.setattr("time.sleep", lambda _: None)
     seen: list[bytes] = []
     spied(monkeypatch, seen.append, lambda: not 8 < len(seen) < 16)
     words = ["--count", "6", "--retries", "0", "--timeout", "0.05", "--report", "x.html", "--force"]
@@ -149,7 +149,7 @@ def test_a_report_that_cannot_be_written_in_the_end(
     press: Press, cli: Cli, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The failure of the line is what counts; that there is no report is a warning."""
-    monkeypatch.setattr("fatektool.cli.elements.watch.time.sleep", lambda _: None)
+    monkeypatch.setattr("time.sleep", lambda _: None)
     folder = press.folder / "gone"
     folder.mkdir()
     calls = []

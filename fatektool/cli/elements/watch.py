@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import sys
-import time
 from collections import deque
 from typing import TYPE_CHECKING, Any, Final
 
@@ -15,13 +14,12 @@ from fatektool.cli.elements.selection import selected, spec_options
 from fatektool.cli.elements.values import SELECTION, shown
 from fatektool.cli.programs.program_files import comments_for, comments_options
 from fatektool.cli.shared.connection_options import connection_options
-from fatektool.cli.shared.documents import error_document
 from fatektool.cli.shared.modbus_map import modbus_map_option
 from fatektool.cli.shared.options import Seconds
-from fatektool.cli.shared.output import print_stderr
 from fatektool.cli.shared.report import report_option, watch_report
+from fatektool.cli.shared.rounds import Pace, failed_in_line, paced_rounds
 from fatektool.cli.shared.streams import reader_is_gone
-from fatektool.errors import FatektoolError, LineError, PlcError, TransportClosed
+from fatektool.errors import FatektoolError, PlcError
 from fatektool.files.times import utc
 from fatektool.jobs.elements.items import comments_of
 from fatektool.jobs.snapshots.snapshot import Snapshot, take_snapshot
@@ -33,13 +31,13 @@ if TYPE_CHECKING:
     from fatektool.cli.shared.connection import Connection
     from fatektool.cli.shared.output import Voice
     from fatektool.client import Plc
+    from fatektool.errors import LineError
     from fatektool.jobs.snapshots.spec import SpecItem
     from fatektool.protocol.values import Value
     from fatektool.report.rounds import Rounds
 
 _TREND: Final = 24
 _BARS: Final = "▁▂▃▄▅▆▇█"
-_MOST_FAILURES: Final = 10
 _VALUE: Final = 7
 _GAPS: Final = 4
 _AROUND: Final = 4  # title, header, what is left out, and the line of the cursor
@@ -92,18 +90,8 @@ def watch_command(
     except (FatektoolError, KeyboardInterrupt) as error:
         if not voice.json:
             raise
-        return _failed(error)
+        return failed_in_line(error)
     return PlcError.exit_code if last is not None and last.errors else 0
-
-
-def _failed(error: FatektoolError | KeyboardInterrupt) -> int:
-    """Say what went wrong in one line of NDJSON, as all before it, and one on stderr."""
-    from fatektool.cli import Interrupted
-
-    told = error if isinstance(error, FatektoolError) else Interrupted("interrupted")
-    click.echo(json.dumps(error_document(told)))
-    print_stderr(f"fatektool: {' '.join(str(told).split())}")
-    return told.exit_code
 
 
 def _lines(rounds: Iterator[Snapshot], comments: Mapping[str, str]) -> Snapshot | None:
@@ -136,30 +124,18 @@ def _rounds(
         voice: is told of rounds that failed.
         kept: takes the rounds, for a report; None for none.
     """
-    due = time.monotonic()
-    failures = done = 0
-    while count is None or done < count:
-        broken = False
-        try:
-            plc.take()
-            snapshot = take_snapshot(plc, items)
-        except LineError as error:
-            broken = isinstance(error, TransportClosed)
-            failures += 1
-            if kept is not None:
-                kept.fail(utc(), error.message)
-            if failures >= _MOST_FAILURES or not done:
-                raise
-            voice.warn(f"{error.message}; trying on")
-        else:
-            failures = 0
-            done += 1
-            if kept is not None:
-                kept.add(snapshot.document())
-            yield snapshot
-        due = max(due + interval_s, time.monotonic())
-        if count is None or done < count:
-            plc.lend(max(0.0, due - time.monotonic()), broken=broken)
+
+    def failed(error: LineError) -> None:
+        if kept is not None:
+            kept.fail(utc(), error.message)
+
+    def read() -> Snapshot:
+        return take_snapshot(plc, items)
+
+    for snapshot in paced_rounds(plc, read, Pace(interval_s, count), failed=failed, voice=voice):
+        if kept is not None:
+            kept.add(snapshot.document())
+        yield snapshot
 
 
 def _live(rounds: Iterator[Snapshot], items: list[SpecItem], comments: Mapping[str, str]) -> Snapshot | None:

@@ -126,3 +126,21 @@ class Plan:
         """How many rows it has."""
         ends = [cell.row + 1 for cell in self.cells] + [box.row + box.rows for box in self.boxes]
         return max([*ends, *(wire.row + 1 for wire in self.wires)], default=0)
+
+
+def net_at(plan: Plan, row: int, column: int) -> Net | None:
+    """What the wire carries that goes through a row before a column; None if there is none."""
+    for wire in plan.wires:
+        if wire.row == row and wire.first <= column <= wire.end:
+            return wire.net
+    for cell in plan.cells:
+        if cell.row == row and cell.column == column:
+            return cell.net
+        if cell.row == row and cell.column + 1 == column and not cell.ends:
+            return (cell.leaf.number,)
+    for box in plan.boxes:
+        pins = box.inputs if box.column == column else box.outputs if box.column + 1 == column else ()
+        for pin in pins:
+            if pin.row == row:
+                return pin.net
+    return None

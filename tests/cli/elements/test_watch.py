@@ -29,7 +29,7 @@ pytestmark = pytest.mark.usefixtures("no_waiting")
 def no_waiting(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     """No round waits for the next; gives how long each would have."""
     waits: list[float] = []
-    monkeypatch.setattr("fatektool.cli.elements.watch.time.sleep", waits.append)
+    monkeypatch.setattr("time.sleep", waits.append)
     return waits
 
 

@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from fatektool.cli.programs.monitor.words import WhyWords, program_words
-from fatektool.ladder.power.values import shown_bit
+from fatektool.ladder.circuit.reading import NoCircuit
+from fatektool.ladder.power.flow import power_of
+from fatektool.ladder.power.values import Shown, number_of, shown_bit
 from fatektool.protocol.elements import Element
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from fatektool.client import Plc
+    from fatektool.jobs.monitor.live import LiveNetwork, Monitor
+    from fatektool.jobs.monitor.rounds import Round
     from fatektool.jobs.monitor.same_program import SameProgram
     from fatektool.jobs.monitor.why import Why, Writer
     from fatektool.ladder.power.causes import Cause, Condition
+    from fatektool.ladder.power.logic import State
+    from fatektool.ladder.power.walk import Walk
 
 
 def program_document(found: SameProgram) -> dict[str, Any]:
@@ -27,6 +34,51 @@ def program_document(found: SameProgram) -> dict[str, Any]:
         "reason": found.reason,
         "says": program_words(found),
     }
+
+
+def monitor_document(plc: Plc, monitor: Monitor, found: Round) -> dict[str, Any]:
+    """``fatektool.monitor/1``: one round."""
+    shown = {each.name: each for network in monitor.networks for each in network.shown}
+    return {
+        "schema": "fatektool.monitor/1",
+        "time": found.time,
+        "target": plc.target,
+        "station": plc.link.station,
+        "protocol": plc.link.codec.name,
+        "file": monitor.program.file.name,
+        "program": program_document(monitor.program),
+        "running": found.running,
+        "duration_s": round(found.duration_s, 3),
+        "values": {name: _value(found.values.get(name), each) for name, each in shown.items()},
+        "errors": {name: reason for name, reason in found.errors.items() if name in shown},
+        "networks": [_network(each, found) for each in monitor.networks],
+    }
+
+
+def _value(raw: int | None, shown: Shown) -> bool | float | str | None:
+    if raw is None:
+        return None
+    if shown.bits == 1:
+        return bool(raw)
+    value = number_of(raw, shown)
+    return value if isfinite(value) else str(value)
+
+
+def _network(each: LiveNetwork, found: Round) -> dict[str, Any]:
+    """What carries in a network, instruction by instruction."""
+    if isinstance(each.circuit, NoCircuit):
+        return {"number": each.network.number, "reason": each.circuit.reason, "instructions": []}
+    walk = power_of(each.circuit, found.values.get)
+    instructions = [
+        {"number": number, "text": instruction.text, "carries": list(carried)}
+        for number, _, instruction in each.network.places
+        if (carried := walk.reached.get(number) or _behind(walk, number))
+    ]
+    return {"number": each.network.number, "reason": None, "instructions": instructions}
+
+
+def _behind(walk: Walk[State], number: int) -> tuple[State, ...]:
+    return (walk.behind[number],) if number in walk.behind else ()
 
 
 def why_document(plc: Plc, why: Why, program: SameProgram, comments: Mapping[str, str]) -> dict[str, Any]:

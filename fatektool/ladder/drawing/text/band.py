@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fatektool.ladder.drawing.plan import RAIL, net_at
 from fatektool.ladder.drawing.text.bands import MARK, Cut
 from fatektool.ladder.drawing.text.letters import width_of
 from fatektool.ladder.drawing.text.surface import Anchor
@@ -38,11 +39,12 @@ class Band:
 
     def __init__(self, sheet: Sheet, begin: Cut, end: Cut, number: int, onward: str) -> None:
         self._begin, self._end, self._number, self._onward = begin, end, number, onward
+        self._plan = sheet.plan
         self._columns = range(begin.column, end.column)
         self._signs = [(cell, text) for cell, text in sheet.signs if cell.column in self._columns]
         self._boxes = [(box, text) for box, text in sheet.boxes if box.column in self._columns]
         self._wires = [
-            (wire.row, max(wire.first, begin.column), min(wire.end, end.column))
+            (wire.row, max(wire.first, begin.column), min(wire.end, end.column), wire.net)
             for wire in sheet.plan.wires
             if wire.first < end.column and wire.end > begin.column
         ]
@@ -63,10 +65,11 @@ class Band:
 
     def draw_on(self, surface: Surface) -> None:
         """Draw it."""
-        for row, first, end in self._wires:
-            surface.across(self._line_of[row], self._at[first], self._at[end])
+        for row, first, end, net in self._wires:
+            surface.across(self._line_of[row], self._at[first], self._at[end], net)
         for link in self._links:
-            surface.down(self._at[link.column], self._line_of[link.first], self._line_of[link.last])
+            first, last = self._line_of[link.first], self._line_of[link.last]
+            surface.down(self._at[link.column], first, last, link.net)
         for cell, sign in self._signs:
             self._draw_sign(surface, cell, sign)
         for box, text in self._boxes:
@@ -84,7 +87,7 @@ class Band:
         """Give each row a line for its wire; give the number of lines in all."""
         above: set[int] = {cell.row for cell, sign in self._signs if sign.name}
         above |= {box.row for box, _ in self._boxes}
-        rows = above | {cell.row for cell, _ in self._signs} | {row for row, _, _ in self._wires}
+        rows = above | {cell.row for cell, _ in self._signs} | {row for row, _, _, _ in self._wires}
         rows |= {row for link in self._links for row in (link.first, link.last)}
         rows |= {*self._begin.rows, *self._end.rows}
         for box, _ in self._boxes:
@@ -109,9 +112,9 @@ class Band:
         line, left, right = self._line_of[cell.row], self._at[cell.column], self._at[cell.column + 1]
         first = left + 1 + (right - left - 1 - width_of(sign.sign)) // 2
         last = first + width_of(sign.sign) - 1
-        surface.across(line, left, first)
+        surface.across(line, left, first, cell.net)
         if not cell.ends:
-            surface.across(line, last, right)
+            surface.across(line, last, right, (cell.leaf.number,))
         surface.sign(line, first, sign, cell.leaf.number)
         for place, text in enumerate((sign.name, "", *sign.below), line - 1):
             if text:
@@ -127,11 +130,11 @@ class Band:
         for pin, name in zip(box.inputs, text.inputs, strict=True):
             surface.write(self._line_of[pin.row], left + 1, name)
             if pin.net is not None:
-                surface.across(self._line_of[pin.row], left - 1, left)
+                surface.across(self._line_of[pin.row], left - 1, left, pin.net)
         for pin, name in zip(box.outputs, text.outputs, strict=True):
             surface.write(self._line_of[pin.row], right - width_of(name), name, Anchor.END)
             if pin.net is not None:
-                surface.across(self._line_of[pin.row], right, right + 1)
+                surface.across(self._line_of[pin.row], right, right + 1, pin.net)
 
     def _draw_ends(self, surface: Surface) -> None:
         """The rail, and the marks of wires that were cut."""
@@ -139,12 +142,14 @@ class Band:
             surface.rail(self._height)
             for row in self._rail:
                 if row in self._line_of:
-                    surface.across(self._line_of[row], 0, 1)
+                    surface.across(self._line_of[row], 0, 1, RAIL)
         for number, row in enumerate(self._begin.rows, self._number):
             mark = f"{number:>{MARK - 2}}{self._onward}"
-            surface.across(self._line_of[row], MARK - 1, MARK)
+            net = net_at(self._plan, row, self._begin.column)
+            surface.across(self._line_of[row], MARK - 1, MARK, net)
             surface.write(self._line_of[row], MARK - 1 - len(mark), mark, Anchor.END)
         after = self._at[self._end.column]
         for number, row in enumerate(self._end.rows, self._number + len(self._begin.rows)):
-            surface.across(self._line_of[row], after, after + 1)
+            net = net_at(self._plan, row, self._end.column)
+            surface.across(self._line_of[row], after, after + 1, net)
             surface.write(self._line_of[row], after + 1, f"{self._onward}{number}")

@@ -9,6 +9,7 @@ from fatektool.ladder.drawing.text.pen import DOWN, LEFT, RIGHT, UP
 from fatektool.ladder.drawing.text.surface import Anchor
 
 if TYPE_CHECKING:
+    from fatektool.ladder.drawing.plan import Net
     from fatektool.ladder.drawing.text.cells import SignText
     from fatektool.ladder.drawing.text.pen import Pen
 
@@ -25,12 +26,12 @@ class Canvas:
         self._ways: dict[tuple[int, int], int] = {}
         self._texts: dict[tuple[int, int], str] = {}
 
-    def across(self, line: int, first: int, last: int) -> None:
+    def across(self, line: int, first: int, last: int, net: Net | None) -> None:  # noqa: ARG002
         """A line from one column to another, both included."""
         for column in range(first, last + 1):
             self._join(line, column, (LEFT if column > first else 0) | (RIGHT if column < last else 0))
 
-    def down(self, column: int, first: int, last: int) -> None:
+    def down(self, column: int, first: int, last: int, net: Net | None) -> None:  # noqa: ARG002
         """A line from one line of text to another, both included."""
         for line in range(first, last + 1):
             self._join(line, column, (UP if line > first else 0) | (DOWN if line < last else 0))
@@ -53,9 +54,9 @@ class Canvas:
     ) -> None:
         """The edges of an instruction's box, its title in the upper one."""
         for line in lines:
-            self.across(line, *columns)
+            self.across(line, *columns, None)
         for column in columns:
-            self.down(column, *lines)
+            self.down(column, *lines, None)
         self.write(lines[0], columns[0] + 2, title)
 
     def write(
@@ -76,6 +77,10 @@ class Canvas:
 
     def lines(self) -> list[str]:
         """What is there."""
+        return ["".join(text for _, text in line) for line in self.lines_in_places()]
+
+    def lines_in_places(self) -> list[list[tuple[int, str]]]:
+        """Each line's texts with their columns, without what is blank at its end."""
         places = [*self._ways, *self._texts]
         lines: list[dict[int, str]] = [{} for _ in range(1 + max((line for line, _ in places), default=-1))]
         for (line, column), ways in self._ways.items():
@@ -83,8 +88,11 @@ class Canvas:
                 lines[line][column] = self.pen.line(ways)
         for (line, column), text in self._texts.items():
             lines[line][column] = text
+        for found in lines:
+            while found and not found[max(found)].strip() and found[max(found)]:
+                del found[max(found)]
         return [
-            "".join(found.get(column, " ") for column in range(1 + max(found, default=-1))).rstrip()
+            [(column, found.get(column, " ")) for column in range(1 + max(found, default=-1))]
             for found in lines
         ]
 

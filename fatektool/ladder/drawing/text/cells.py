@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from fatektool.ladder.circuit.nodes import Leaf
     from fatektool.ladder.drawing.plan import BoxCell
     from fatektool.ladder.drawing.text.pen import Pen
+    from fatektool.ladder.drawing.text.states import LiveStates
 
 _COMMENT: Final = 9
 _MOST_LINES: Final = 6
@@ -66,10 +67,14 @@ class Writer:
         pen: what they are written with.
         comments: of elements.
         widest: the columns that one may take.
+        states: what is written beside the program; None for nothing.
     """
 
-    def __init__(self, pen: Pen, comments: Mapping[str, str], widest: int) -> None:
+    def __init__(
+        self, pen: Pen, comments: Mapping[str, str], widest: int, states: LiveStates | None = None
+    ) -> None:
         self._pen = pen
+        self._states = states
         self._comments = comments
         self._widest = widest
 
@@ -85,9 +90,10 @@ class Writer:
             Look.LINE: inside,
             Look.GAP: " " * 3,
         }[sign.look]
-        room = max(width_of(drawn) + 4, width_of(sign.name))
+        name, kept = (sign.name, 0) if self._states is None else self._states.name(leaf, sign.name)
+        room = max(width_of(drawn) + 4, width_of(name), kept)
         below = wrapped(self._remark(sign.elements), max(room, _COMMENT))[:_MOST_LINES]
-        return SignText(sign.look, sign.name, drawn, tuple(below), max([room, *map(width_of, below)]))
+        return SignText(sign.look, name, drawn, tuple(below), max([room, *map(width_of, below)]))
 
     def box(self, box: BoxCell) -> BoxText:
         """A box and what is in it."""
@@ -100,8 +106,14 @@ class Writer:
         settings = [
             line
             for setting in frame.settings
-            for line in self._setting(setting.text, self._remark(setting.elements), self._widest - beside)
+            for line in self._setting(
+                setting.text + (self._states.setting(box.leaf, setting.elements) if self._states else ""),
+                self._remark(setting.elements),
+                self._widest - beside,
+            )
         ]
+        if self._states is not None:
+            settings += self._states.of_title(box.leaf, frame)
         (title,) = wrapped(self._pen.letters.spell(frame.title), self._widest - 4)[:1]
         room = max([beside + max(map(width_of, settings), default=0), width_of(title) + 4])
         return BoxText(title, inputs, outputs, tuple(settings), before, room)

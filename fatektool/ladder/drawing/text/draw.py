@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from fatektool.ladder.circuit.nodes import Circuit
+    from fatektool.ladder.drawing.text.states import LiveStates
 
 NARROWEST: Final = 40
 """No drawing is made narrower than this."""
@@ -47,7 +48,13 @@ def draw(circuit: Circuit, comments: Mapping[str, str], columns: int, pen: Pen) 
         yield from canvas.lines()
 
 
-def bands_of(circuit: Circuit, comments: Mapping[str, str], columns: int, pen: Pen) -> list[Band]:
+def bands_of(
+    circuit: Circuit,
+    comments: Mapping[str, str],
+    columns: int,
+    pen: Pen,
+    states: LiveStates | None = None,
+) -> list[Band]:
     """A circuit in bands that are no wider than they may be; none of an empty network.
 
     Args:
@@ -55,11 +62,12 @@ def bands_of(circuit: Circuit, comments: Mapping[str, str], columns: int, pen: P
         comments: of elements, to stand under them.
         columns: how wide a band may be; at least ``NARROWEST``.
         pen: what it will be drawn with.
+        states: what is written beside the program; None for nothing.
     """
     if is_empty(circuit):
         return []
     columns = max(columns, NARROWEST)
-    writer = Writer(pen, comments, columns - 2 * MARK - 2)
+    writer = Writer(pen, comments, columns - 2 * MARK - 2, states)
     plan = plan_of(circuit)
     sheet = Sheet(aligned(plan), writer)
     cuts = cuts_of(sheet.plan, sheet.rooms, columns)

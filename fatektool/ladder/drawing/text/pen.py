@@ -37,12 +37,16 @@ class Pen:
 
     def __init__(self, letters: Letters) -> None:
         self.letters = letters
-        self._boxes = letters.has("".join(set(_BOX.values())))
+        self.has_boxes = letters.has("".join(set(_BOX.values())))
         arrows = letters.has("↑↓►")
-        self.contact = ("┤", "├") if self._boxes else ("]", "[")
+        self.contact = ("┤", "├") if self.has_boxes else ("]", "[")
         self.rising, self.falling = ("↑", "↓") if arrows else ("^", "v")
         self.onward = "►" if arrows else ">"
 
+    def in_ascii(self) -> None:
+        """Draw no box characters."""
+        self.has_boxes, self.contact = False, ("]", "[")
+
     def line(self, ways: int) -> str:
         """The character of a line that goes these ways."""
-        return _BOX[ways] if self._boxes else _ASCII.get(ways, "+")
+        return _BOX[ways] if self.has_boxes else _ASCII.get(ways, "+")

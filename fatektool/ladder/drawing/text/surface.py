@@ -6,6 +6,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
+    from fatektool.ladder.drawing.plan import Net
     from fatektool.ladder.drawing.text.cells import SignText
 
 
@@ -20,10 +21,10 @@ class Anchor(StrEnum):
 class Surface(Protocol):
     """Lines of text from 0 down, columns of characters from 0 to the right."""
 
-    def across(self, line: int, first: int, last: int) -> None:
-        """A wire from one column to another, both included."""
+    def across(self, line: int, first: int, last: int, net: Net | None) -> None:
+        """A wire from one column to another, both included; ``net`` is what it carries."""
 
-    def down(self, column: int, first: int, last: int) -> None:
+    def down(self, column: int, first: int, last: int, net: Net | None) -> None:
         """A wire from one line to another, both included."""
 
     def rail(self, lines: int) -> None:

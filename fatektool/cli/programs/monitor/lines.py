@@ -1,0 +1,44 @@
+"""``monitor`` without a terminal: one NDJSON line a round."""
+
+from __future__ import annotations
+
+import json
+import sys
+from typing import TYPE_CHECKING
+
+import click
+
+from fatektool.cli.programs.monitor.documents import monitor_document
+from fatektool.cli.programs.monitor.why import say_of_program
+from fatektool.cli.shared.rounds import paced_rounds
+from fatektool.cli.shared.streams import reader_is_gone
+
+if TYPE_CHECKING:
+    from fatektool.cli.shared.output import Voice
+    from fatektool.cli.shared.rounds import Pace
+    from fatektool.client import Plc
+    from fatektool.errors import LineError
+    from fatektool.jobs.monitor.live import Monitor
+
+
+def print_rounds(plc: Plc, monitor: Monitor, pace: Pace, voice: Voice) -> bool:
+    """Print a line a round; False if an element of the last had no value.
+
+    Raises:
+        LineError: no answer, for long or from the beginning.
+    """
+    sameness = None
+    found = None
+
+    def failed(_: LineError) -> None:
+        """What is lost is said by the rounds."""
+
+    for found in paced_rounds(plc, monitor.read, pace, failed=failed, voice=voice):
+        if monitor.program.sameness != sameness:
+            sameness = monitor.program.sameness
+            say_of_program(monitor.program, voice)
+        click.echo(json.dumps(monitor_document(plc, monitor, found), allow_nan=False))
+        sys.stdout.flush()
+        if reader_is_gone():
+            break
+    return found is None or not found.errors

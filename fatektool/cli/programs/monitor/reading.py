@@ -1,0 +1,112 @@
+"""Rounds in a thread of their own, so that keys are heard while the line is slow or lost."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from typing import TYPE_CHECKING, Final
+
+from fatektool.cli.shared.rounds import paced_rounds
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import TracebackType
+    from typing import Self
+
+    from fatektool.cli.shared.rounds import Pace
+    from fatektool.client import Plc
+    from fatektool.errors import LineError
+    from fatektool.jobs.monitor.live import Monitor
+    from fatektool.jobs.monitor.rounds import Round
+
+_TIMED: Final = 12
+
+
+class _Stopped(Exception):
+    """Nobody wants rounds any more."""
+
+
+class Reading:
+    """Reads rounds until it is told to stop; for a ``with`` statement.
+
+    Args:
+        plc: the PLC; nobody else uses it meanwhile.
+        monitor: what is read.
+        pace: how often, and how many.
+        on_news: is called after each round, and when all is over; from the thread.
+
+    Attributes:
+        last: the last round; None if there is none.
+        lost: the error of the last round that failed; None if the last one did not.
+        lost_since: when the first of the rounds failed that have failed since.
+        is_over: no further round comes.
+        error: why; None if all rounds that were asked for are done.
+    """
+
+    def __init__(self, plc: Plc, monitor: Monitor, pace: Pace, on_news: Callable[[], object]) -> None:
+        self._plc, self._monitor, self._pace, self._on_news = plc, monitor, pace, on_news
+        self._stop = threading.Event()
+        self._ended: deque[float] = deque(maxlen=_TIMED)
+        self._thread = threading.Thread(target=self._run, name="rounds", daemon=True)
+        self.last: Round | None = None
+        self.lost: LineError | None = None
+        self.lost_since = ""
+        self.is_over = False
+        self.error: BaseException | None = None
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._stop.set()
+        self._thread.join()
+
+    @property
+    def rate(self) -> float:
+        """Rounds a second, over the last ones."""
+        ended = list(self._ended)
+        spent = ended[-1] - ended[0] if len(ended) > 1 else 0.0
+        return (len(ended) - 1) / spent if spent else 0.0
+
+    def _run(self) -> None:
+        try:
+            rounds = paced_rounds(
+                self._plc,
+                self._monitor.read,
+                self._pace,
+                failed=self._failed,
+                voice=None,
+                sleep=self._sleep,
+            )
+            for found in rounds:
+                self._ended.append(time.monotonic())
+                self.last, self.lost = found, None
+                self._on_news()
+        except _Stopped:
+            pass
+        except BaseException as error:  # noqa: BLE001  # who waits for rounds raises it
+            self.error = error
+        self.is_over = True
+        self._on_news()
+
+    def _failed(self, error: LineError) -> None:
+        """Say so, and go on; but for the first round of all, which shows that nothing is right yet.
+
+        Raises:
+            LineError: it was the first.
+        """
+        if self.last is None:
+            raise error
+        if self.lost is None:
+            self.lost_since = time.strftime("%H:%M:%S")
+        self.lost = error
+        self._ended.clear()
+        self._on_news()
+
+    def _sleep(self, seconds: float) -> None:
+        if self._stop.wait(seconds):
+            raise _Stopped
