@@ -1,8 +1,9 @@
-"""Times as documents and file names have them: UTC."""
+"""Times: UTC in documents and file names, local time on a screen."""
 
 from __future__ import annotations
 
 import time
+from calendar import timegm
 
 
 def utc(seconds: float | None = None) -> str:
@@ -13,3 +14,8 @@ def utc(seconds: float | None = None) -> str:
 def stamp(created: str) -> str:
     """The same for a file name: ``20261122T031500Z``."""
     return created.replace("-", "").replace(":", "")
+
+
+def local_clock(created: str) -> str:
+    """The same moment on this computer's clock, for a screen: ``04:15:00``."""
+    return time.strftime("%H:%M:%S", time.localtime(timegm(time.strptime(created, "%Y-%m-%dT%H:%M:%SZ"))))

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 WORDS = {vector.text: vector.words for vector in (*READ, *PRINTED)}
 """The words of every text that a vector has, and of a few more."""
 WORDS |= {"OUT TR 1": (0x01C4,), "LD TR 1": (0x0164,), "AND NOT M3": (0x1398,), "LD X0": (0x0060,)}
+WORDS |= {"AND X2": (0x0280,), "OR X2": (0x02A0,)}
 
 
 def words_of(*texts: str) -> tuple[int, ...]:

@@ -28,8 +28,10 @@ from fatektool.simulator.listen.servers import Server
 from fatektool.transport.base import LineSettings
 from fatektool.transport.memory import MemoryTransport
 from fatektool.transport.trace_reader import read_trace
+from tests.cli.programs.monitor.plant import IMAGE
 from tests.cli.running import Press, one_line
 from tests.cli.shared.test_trace import commands
+from tests.project.files import backup_file
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -60,6 +62,8 @@ link table write table.toml R5000 --dry-run
 link result R100
 link modem show
 link modem set --auto-answer 2 --dry-run
+monitor ladder.json --count 2 --interval 0.01
+monitor ladder.json --why Y4
 """
 WRITING = """\
 restore new.json --yes
@@ -98,8 +102,9 @@ WRITING_CODES = {b"41", b"42", b"45", b"47", b"49", b"50"}
 
 @pytest.fixture
 def press(place: Path, cli: Cli) -> Press:
-    """A PLC in RUN, with files that would change it."""
+    """A PLC in RUN, with files that would change it, and one with networks."""
     made = Press(place)
+    backup_file("ladder.json", IMAGE)
     (place / "table.toml").write_text(TABLE)
     spare = f"sim:{place.parent / 'spare.state'}"
     assert cli("write", "R0-R9=7", "-p", spare).code == 0
@@ -141,12 +146,9 @@ LEAVES = {words: command for words, command in commands(app) if not isinstance(c
 
 
 def test_every_command_that_has_a_port_is_tried_here() -> None:
-    """A new command belongs into READING or WRITING above; with a port it has --read-only.
-
-    ``monitor`` needs a program with networks: ``tests/cli/programs/monitor`` tries it.
-    """
+    """A new command belongs into READING or WRITING above; with a port it has --read-only."""
     talking = {words for words, command in LEAVES.items() if "port" in {each.name for each in command.params}}
-    assert talking - {"inventory add", "monitor"} == of_lines(READING + WRITING)
+    assert talking - {"inventory add"} == of_lines(READING + WRITING)
     for words in talking:
         assert "read_only" in {each.name for each in LEAVES[words].params}, words
     broadcasting = {

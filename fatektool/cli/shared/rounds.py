@@ -44,6 +44,7 @@ def paced_rounds(
     failed: Callable[[LineError], object],
     voice: Voice | None,
     sleep: Callable[[float], object] | None = None,
+    clock: Callable[[], float] = time.monotonic,
 ) -> Iterator[T]:
     """What each round reads, on time.
 
@@ -54,11 +55,12 @@ def paced_rounds(
         failed: is told of each round that failed.
         voice: warns of them; many in a row, or the first of all, then end it. None goes on for ever.
         sleep: waits; it may raise to end the rounds. None for ``time.sleep``.
+        clock: seconds.
 
     Raises:
         LineError: no answer, for long or from the beginning.
     """
-    due = time.monotonic()
+    due = clock()
     failures = done = 0
     while pace.count is None or done < pace.count:
         broken = False
@@ -77,9 +79,9 @@ def paced_rounds(
             failures = 0
             done += 1
             yield found
-        due = max(due + pace.interval_s, time.monotonic())
+        due = max(due + pace.interval_s, clock())
         if pace.count is None or done < pace.count:
-            plc.lend(max(0.0, due - time.monotonic()), broken=broken, sleep=sleep)
+            plc.lend(max(0.0, due - clock()), broken=broken, sleep=sleep)
 
 
 def failed_in_line(error: FatektoolError | KeyboardInterrupt) -> int:

@@ -7,11 +7,12 @@ checksum, but for one change in 65536. Settings are not compared. ``verify`` com
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING, Final
 
-from fatektool.errors import PlcRefused
+from fatektool.errors import NoAnswer, PlcRefused
 from fatektool.ladder.image import words_of_image
 from fatektool.program.headers.header import FBS, PAGE_WORDS, SWAPPED
 from fatektool.protocol.commands import Command
@@ -74,6 +75,11 @@ class SameProgram:
         return Sameness.SAME if self.pages else Sameness.UNKNOWN
 
     @property
+    def is_certain(self) -> bool:
+        """True if all that was to be compared is the same."""
+        return self.sameness is Sameness.SAME and self.reason is None
+
+    @property
     def has_sums(self) -> bool:
         """True if length and checksum of the whole code have been compared."""
         return bool(self._header_pages) and all(page in self._there for page in self._header_pages)
@@ -91,7 +97,7 @@ class SameProgram:
         """Compare these pages too. One that seems to differ is read twice.
 
         Raises:
-            LineError: no answer.
+            LineError: the PLC answers nothing at all.
         """
         for page in pages:
             try:
@@ -99,10 +105,27 @@ class SameProgram:
                 if page in self._differing():
                     self._there[page] = self.plc.read_page(page)
             except PlcRefused as refusal:
-                self.reason = f"the PLC refuses page {page} of its program (4F): {refusal.message}"
                 self._there.pop(page, None)
+                self.reason = f"the PLC refuses page {page} of its program (4F): {refusal.message}"
+                break
+            except NoAnswer as silence:
+                self._there.pop(page, None)
+                self._require_answers()
+                self.reason = (
+                    f"the PLC does not answer the request for page {page} of its program (4F): "
+                    f"{silence.message}"
+                )
                 break
         self.pages, self.different = sorted(self._there), self._differing()
+
+    def _require_answers(self) -> None:
+        """Read the brief status: a PLC that answers this, and not 4F, can be monitored all the same.
+
+        Raises:
+            LineError: no answer to that, too.
+        """
+        with suppress(PlcRefused):
+            self.plc.brief_status()
 
     def _differing(self) -> list[int]:
         """The pages that differ, in the order of bytes in which fewer do."""

@@ -33,12 +33,14 @@ class Condition:
         conducts: whether it does.
         function: of an output the function.
         carried: of TU, TD and INV: whether the line before it carries.
+        is_in_block: of TD and INV: it is in a block, and what it acts on is not known.
     """
 
     leaf: Leaf
     conducts: State
     function: Leaf | None = None
     carried: State = None
+    is_in_block: bool = False
 
 
 Way: TypeAlias = tuple[Condition, ...]
@@ -88,6 +90,14 @@ class Causes(Signals[Cause]):
         if leaf.instruction.form.text == "TU" and carried.state is False:
             return carried
         return _single(Condition(leaf, state, carried=carried.state))
+
+    def unsure(self, leaf: Leaf) -> Cause:
+        """Not known, because of it."""
+        return _single(Condition(leaf, None, is_in_block=True))
+
+    def state(self, signal: Cause) -> State:
+        """Whether it is on."""
+        return signal.state
 
     def both(self, one: Cause, other: Cause) -> Cause:
         """Two in series."""

@@ -63,6 +63,14 @@ class Power(Signals[State]):
         kind = leaf.instruction.form.text
         return opposite(carried) if kind == "INV" else _edge(kind, carried)
 
+    def unsure(self, leaf: Leaf) -> State:  # noqa: ARG002  # whichever it is
+        """Not known."""
+        return None
+
+    def state(self, signal: State) -> State:
+        """It is one."""
+        return signal
+
     def both(self, one: State, other: State) -> State:
         """Two in series."""
         return both(one, other)

@@ -7,7 +7,7 @@
     T30 .01 R8               R8, RT30, and its contact T30
     FUN 08D MOV S:R0 D:R2    DR0, DR2
 
-A number is signed: so the FBs manual has it of all registers and comparisons. The results and operands of
+A number is signed [E:signed-numbers]. The results and operands of
 functions of floats are floats.
 """
 
@@ -61,7 +61,7 @@ def shown_bit(leaf: Leaf) -> Shown | None:
 def output_contact(function: Leaf, output: int) -> str | None:
     """The element whose contact is the same as an output of a function; None where there is none.
 
-    Of a timer or counter the output TUP or CUP is on when its contact is (FBs manual, timers and counters).
+    Of a timer or counter the output TUP or CUP is on when its contact is [E:timer-output].
     """
     form = function.instruction.form
     if output or not form.fixed or form.fixed[0] not in _TIMERS_AND_COUNTERS:

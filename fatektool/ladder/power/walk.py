@@ -1,19 +1,37 @@
 """A walk over a circuit along its lines, from left to right, with any kind of signal.
 
-A block is worked out for itself before it is joined to what is before it, as its instructions do it: what
-``INV`` in a block turns round, and what ``OUT TR n`` there stores, is the block's own signal.
+A block is evaluated for itself before it is joined to what is before it, as its instructions do it: what
+``OUT TR n`` in a block stores is the block's own signal.
+
+What INV and TD in a block act on is not known [E:ladder-block]: the block's own signal, or all that the line
+carries up to there. Both are the same where the line carries up to the block. Elsewhere the result is not
+known, unless another contact decides it.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Generic, TypeVar
 
-from fatektool.ladder.circuit.nodes import Block, Box, Circuit, Leaf, Line, Parallel, Part, Series
+from fatektool.ladder.circuit.nodes import (
+    Block,
+    Box,
+    Circuit,
+    Leaf,
+    Line,
+    Node,
+    Parallel,
+    Part,
+    Series,
+    leaves_of,
+)
 from fatektool.ladder.circuit.roles import Role
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from fatektool.ladder.power.logic import State
 
 T = TypeVar("T")
 
@@ -40,12 +58,33 @@ class Signals(ABC, Generic[T]):
         """What TU, TD or INV makes of a signal."""
 
     @abstractmethod
+    def unsure(self, leaf: Leaf) -> T:
+        """What TD or INV in a block makes of a signal, where it is not known which signal that is."""
+
+    @abstractmethod
+    def state(self, signal: T) -> State:
+        """Whether a signal is on."""
+
+    @abstractmethod
     def both(self, one: T, other: T) -> T:
         """Two in series."""
 
     @abstractmethod
     def either(self, signals: Sequence[T]) -> T:
         """Several in parallel."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Before(Generic[T]):
+    """What comes to a block.
+
+    Attributes:
+        signal: it.
+        is_doubtful: INV or TD in the block may act on it, and it is not on.
+    """
+
+    signal: T
+    is_doubtful: bool = False
 
 
 class Walk(Generic[T]):
@@ -70,14 +109,14 @@ class Walk(Generic[T]):
             self._line(line)
 
     def _line(self, line: Line) -> T:
-        return self._row(line.parts, self._signals.rail, self._signals.rail)
+        return self._row(line.parts, self._signals.rail, _Before(self._signals.rail))
 
-    def _row(self, parts: Sequence[Part], carried: T, before: T) -> T:
+    def _row(self, parts: Sequence[Part], carried: T, before: _Before[T]) -> T:
         for part in parts:
             carried = self._part(part, carried, before)
         return carried
 
-    def _part(self, part: Part, carried: T, before: T) -> T:
+    def _part(self, part: Part, carried: T, before: _Before[T]) -> T:
         """What a part hands on.
 
         Args:
@@ -85,7 +124,6 @@ class Walk(Generic[T]):
             carried: what comes to it, of its block.
             before: what comes to the block.
         """
-        signals = self._signals
         match part:
             case Box():
                 self._box(part, carried)
@@ -93,13 +131,25 @@ class Walk(Generic[T]):
             case Series(parts):
                 return self._row(parts, carried, before)
             case Parallel(branches):
-                return signals.either([self._part(each, carried, before) for each in branches])
+                found = [self._part(each, carried, before) for each in branches]
+                unsure = [each for each in found if self._signals.state(each) is None]
+                return unsure[0] if unsure and before.is_doubtful else self._signals.either(found)
             case Block(body):
-                own = self._part(body, signals.rail, signals.both(before, carried))
-                return signals.both(carried, own)
-        found = self._leaf(part, carried)
-        self.behind[part.number] = signals.both(before, found)
-        return found
+                return self._block(body, carried, before)
+        return self._leaf(part, carried, before)
+
+    def _block(self, body: Node, carried: T, before: _Before[T]) -> T:
+        signals = self._signals
+        signal = self._on_the_wire(carried, before)
+        is_doubtful = signals.state(signal) is not True and any(map(_turns, leaves_of(body)))
+        own = self._part(body, signals.rail, _Before(signal, is_doubtful))
+        return own if is_doubtful and signals.state(own) is None else signals.both(carried, own)
+
+    def _on_the_wire(self, carried: T, before: _Before[T]) -> T:
+        """What the wire carries, with what comes to the block."""
+        if before.is_doubtful and self._signals.state(carried) is None:
+            return carried
+        return self._signals.both(before.signal, carried)
 
     def _box(self, box: Box, carried: T) -> None:
         self.reached[box.function.number] = (carried, *map(self._line, box.inputs))
@@ -108,7 +158,12 @@ class Walk(Generic[T]):
                 self._functions[line.head.number] = box.function
             self._line(line)
 
-    def _leaf(self, leaf: Leaf, carried: T) -> T:
+    def _leaf(self, leaf: Leaf, carried: T, before: _Before[T]) -> T:
+        found = self._behind(leaf, carried, before)
+        self.behind[leaf.number] = self._on_the_wire(found, before)
+        return found
+
+    def _behind(self, leaf: Leaf, carried: T, before: _Before[T]) -> T:
         signals = self._signals
         match leaf.role:
             case Role.COIL:
@@ -117,6 +172,8 @@ class Walk(Generic[T]):
                 self._stores[leaf.store] = carried
             case Role.RECALL:
                 return signals.both(carried, self._stores[leaf.store])
+            case Role.LINE if before.is_doubtful and _turns(leaf):
+                return signals.unsure(leaf)
             case Role.LINE:
                 return signals.of_line(leaf, carried)
             case Role.OUTPUT:
@@ -126,3 +183,8 @@ class Walk(Generic[T]):
             case _:
                 return signals.both(carried, signals.contact(leaf))
         return carried
+
+
+def _turns(leaf: Leaf) -> bool:
+    """True for INV and TD of a line: they may hand on a signal where none comes."""
+    return leaf.role is Role.LINE and leaf.instruction.form.text != "TU"

@@ -12,9 +12,11 @@ import pytest
 
 from fatektool.cli.app import app
 from fatektool.transport.trace_reader import TraceRecord, read_trace
+from tests.cli.programs.monitor.plant import IMAGE
 from tests.cli.running import process, started
 from tests.cli.shared.test_signals import paced
 from tests.guard import GUARD_S
+from tests.project.files import backup_file
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -44,6 +46,7 @@ doctor
 link ports
 scan --stations 1-2 --timeout 0.01
 check --expect any --reference old.json
+monitor ladder.json --count 2 --interval 0.01
 """
 
 
@@ -69,7 +72,6 @@ def test_whatever_has_a_port_has_a_trace() -> None:
         if "port" in options and words != "inventory add":  # which asks no PLC
             assert "trace" in options, words
             talking.add(words.split()[0])
-    talking.remove("monitor")  # it needs a program with networks: tests/cli/programs/monitor
     assert talking == {line.split()[0] for line in TALKING.splitlines()} & set(app.subcommands)
 
 
@@ -77,6 +79,7 @@ def test_whatever_has_a_port_has_a_trace() -> None:
 def test_every_command_is_recorded(press: Press, cli: Cli, line: str) -> None:
     """In both forms, with the same requests, and the bytes of one record are whole frames."""
     found = []
+    backup_file("ladder.json", IMAGE)
     for suffix in SUFFIXES:
         trace = Path(f"line{suffix}")
         words = line.replace("x.json", f"x{suffix}.json").split()

@@ -2,6 +2,9 @@
 
 It runs one scan of a network, with the states of the elements as they are, and the answer to what they do not
 decide (edges, outputs of functions) as given. What each coil and function gets is what it gives back.
+
+What is on the stack is a function: of what comes to its block, what the block hands on. So INV and TD in a
+block can be tried both ways: on the block's own signal, or on all that the line carries up to there.
 """
 
 from __future__ import annotations
@@ -14,18 +17,25 @@ if TYPE_CHECKING:
     from fatektool.ladder.instruction import Instruction
 
 
+RAIL = True
+
+
 class Interpreter:
     """A scan of one network.
 
     Args:
         elements: raw values by name.
         guess: the answer where they do not decide.
+        by_line: INV and TD act on all that the line carries.
     """
 
-    def __init__(self, elements: Mapping[str, int], guess: Callable[[], bool]) -> None:
+    def __init__(
+        self, elements: Mapping[str, int], guess: Callable[[], bool], *, by_line: bool = False
+    ) -> None:
         self._elements = elements
         self._guess = guess
-        self._stack: list[bool] = []
+        self._by_line = by_line
+        self._stack: list[Callable[[bool], bool]] = []
         self._stores: dict[str, bool] = {}
         self._is_done = False
         self._function = ""
@@ -42,7 +52,7 @@ class Interpreter:
             case [""]:
                 pass
             case ["OUT", "TR", store]:
-                self._stores[store] = self._stack[-1]
+                self._stores[store] = self._stack[-1](RAIL)
             case ["LD", "TR", store]:
                 self._begin(self._stores[store])
             case ["FO", output]:
@@ -50,27 +60,29 @@ class Interpreter:
                 self._begin(bool(self._elements[self._function]) if known else self._guess())
             case ["ANDLD"]:
                 last = self._stack.pop()
-                self._stack[-1] = self._stack[-1] and last
+                self._then(lambda block, before: last(block(before)))
             case ["ORLD"]:
                 last = self._stack.pop()
-                self._stack[-1] = self._stack[-1] or last
+                self._then(lambda block, before: block(before) or last(before))
             case ["INV"]:
-                self._stack[-1] = not self._stack[-1]
+                self._turn(lambda carried: not carried)
             case ["TU"]:
-                self._stack[-1] = self._stack[-1] and self._guess()
+                rises = self._guess()
+                self._then(lambda block, before: block(before) and rises)
             case ["TD"]:
-                self._stack[-1] = not self._stack[-1] and self._guess()
+                falls = self._guess()
+                self._turn(lambda carried: not carried and falls)
             case [("ORG" | "ORGF" | "LD" | "LDF"), *what]:
                 self._begin(self._contact(what))
             case [("AND" | "ANDF"), *what]:
                 conducts = self._contact(what)
-                self._stack[-1] = self._stack[-1] and conducts
+                self._then(lambda block, before: block(before) and conducts)
                 self._is_done = False
             case [("OR" | "ORF"), *what]:
                 conducts = self._contact(what)
-                self._stack[-1] = self._stack[-1] or conducts
+                self._then(lambda block, before: block(before) or (before and conducts))
             case _:
-                self.reached[number] = tuple(self._stack)
+                self.reached[number] = tuple(block(RAIL) for block in self._stack)
                 del self._stack[1:]
                 self._is_done = True
                 self._function = words[0] if words[0][0] in "TC" and words[0] != "TO" else ""
@@ -78,8 +90,19 @@ class Interpreter:
     def _begin(self, conducts: bool) -> None:
         if self._is_done:
             self._stack.clear()
-        self._stack.append(conducts)
+        self._stack.append(lambda before: before and conducts)
         self._is_done = False
+
+    def _then(self, made: Callable[[Callable[[bool], bool], bool], bool]) -> None:
+        block = self._stack.pop()
+        self._stack.append(lambda before: made(block, before))
+
+    def _turn(self, turned: Callable[[bool], bool]) -> None:
+        """INV or TD: of all that comes, or of what the block has of its own."""
+        if self._by_line:
+            self._then(lambda block, before: turned(block(before)))
+        else:
+            self._then(lambda block, before: before and turned(block(RAIL)))
 
     def _contact(self, what: list[str]) -> bool:  # noqa: PLR0911  # a case each
         match what:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
+from fatektool.files.times import local_clock
 from fatektool.ladder.circuit.nodes import Leaf
 from fatektool.ladder.circuit.reading import NoCircuit
 from fatektool.ladder.drawing.text.draw import NARROWEST
@@ -85,7 +86,7 @@ class Frames:
         parts = [f"{shown} of {of}"]
         if news.round is not None:
             mode = {True: "RUN", False: "STOP", None: "mode unknown"}[news.round.running]
-            parts += [mode, f"{news.rate:.1f} rounds/s", news.round.time[11:19]]
+            parts += [mode, f"{news.rate:.1f} rounds/s", local_clock(news.round.time)]
         return self._pen.letters.spell("  ".join([*parts, self._name, self._place]))
 
     def _notes(self, view: View, news: News, width: int) -> list[str]:

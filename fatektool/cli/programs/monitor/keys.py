@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import signal
 import sys
 import threading
@@ -39,6 +40,9 @@ SEQUENCES: Final = {
     "\x08": "backspace",
 }
 _WINDOWS: Final = {"H": "up", "P": "down", "I": "pgup", "Q": "pgdn", "G": "home", "O": "end"}
+_SEQUENCE: Final = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]?|O.?)")
+"""A sequence of ECMA-48, or of keys in application mode; it may end too early."""
+_BEGUN: Final = re.compile(rb"\x1b(?:\[[0-?]*[ -/]*|O)?\Z")
 _SEQUENCE_S: Final = 0.05
 """A sequence may come in pieces: so long the rest of one is waited for."""
 _LOOK_S: Final = 0.05
@@ -64,11 +68,9 @@ def keys_of(text: str) -> Iterator[str]:
     """The names of keys: ``up``, ``enter``, or the character; of unknown sequences nothing."""
     while text:
         known = max((each for each in SEQUENCES if text.startswith(each)), key=len, default="")
-        if known == "\x1b" and text[1:2] in {"[", "O"}:
-            end = next(
-                (at for at, each in enumerate(text[2:], 2) if each.isalpha() or each == "~"), len(text)
-            )
-            text = text[end + 1 :]
+        unknown = _SEQUENCE.match(text) if known == "\x1b" else None
+        if unknown is not None:
+            text = text[unknown.end() :]
             continue
         yield SEQUENCES[known] if known else text[0]
         text = text[len(known) or 1 :]
@@ -172,9 +174,8 @@ class PosixKeys:
 
 def is_begun(data: bytes) -> bool:
     """True if bytes end within a sequence or a character."""
-    last = data[data.rfind(b"\x1b") :] if b"\x1b" in data else b""
-    if last and last.decode("latin-1") not in {*SEQUENCES} - {"\x1b"} and len(last) < 4:
-        return last in {b"\x1b", b"\x1b[", b"\x1bO"} or (last.startswith(b"\x1b[") and last[-1:].isdigit())
+    if _BEGUN.search(data):
+        return True
     try:
         data.decode("utf-8")
     except UnicodeDecodeError as error:

@@ -27,15 +27,16 @@ def print_rounds(plc: Plc, monitor: Monitor, pace: Pace, voice: Voice) -> bool:
     Raises:
         LineError: no answer, for long or from the beginning.
     """
-    sameness = None
+    said = None
     found = None
 
     def failed(_: LineError) -> None:
         """What is lost is said by the rounds."""
 
     for found in paced_rounds(plc, monitor.read, pace, failed=failed, voice=voice):
-        if monitor.program.sameness != sameness:
-            sameness = monitor.program.sameness
+        known = (monitor.program.sameness, monitor.program.reason)
+        if known != said:
+            said = known
             say_of_program(monitor.program, voice)
         click.echo(json.dumps(monitor_document(plc, monitor, found), allow_nan=False))
         sys.stdout.flush()

@@ -7,6 +7,8 @@ import time
 from collections import deque
 from typing import TYPE_CHECKING, Final
 
+from fatektool.cli.programs.monitor.frame import News
+from fatektool.cli.programs.monitor.words import program_words
 from fatektool.cli.shared.rounds import paced_rounds
 
 if TYPE_CHECKING:
@@ -35,6 +37,8 @@ class Reading:
         monitor: what is read.
         pace: how often, and how many.
         on_news: is called after each round, and when all is over; from the thread.
+        clock: seconds.
+        wait: waits so many seconds; true to end the rounds. None to wait until then or the end of ``with``.
 
     Attributes:
         last: the last round; None if there is none.
@@ -44,11 +48,21 @@ class Reading:
         error: why; None if all rounds that were asked for are done.
     """
 
-    def __init__(self, plc: Plc, monitor: Monitor, pace: Pace, on_news: Callable[[], object]) -> None:
+    def __init__(
+        self,
+        plc: Plc,
+        monitor: Monitor,
+        pace: Pace,
+        on_news: Callable[[], object],
+        *,
+        clock: Callable[[], float] = time.monotonic,
+        wait: Callable[[float], object] | None = None,
+    ) -> None:
         self._plc, self._monitor, self._pace, self._on_news = plc, monitor, pace, on_news
         self._stop = threading.Event()
+        self._clock, self._wait = clock, wait or self._stop.wait
         self._ended: deque[float] = deque(maxlen=_TIMED)
-        self._thread = threading.Thread(target=self._run, name="rounds", daemon=True)
+        self._thread = threading.Thread(target=self.run, name="rounds", daemon=True)
         self.last: Round | None = None
         self.lost: LineError | None = None
         self.lost_since = ""
@@ -72,7 +86,20 @@ class Reading:
         spent = ended[-1] - ended[0] if len(ended) > 1 else 0.0
         return (len(ended) - 1) / spent if spent else 0.0
 
-    def _run(self) -> None:
+    @property
+    def news(self) -> News:
+        """What the screen shows; of a line that is lost no states."""
+        program = self._monitor.program
+        words = "" if program.is_certain or self.last is None else program_words(program)
+        lost = self.lost
+        if lost is not None:
+            return News(
+                None, lost=f"NO ANSWER since {self.lost_since}: {lost.message}; trying on", program=words
+            )
+        return News(self.last, self.rate, program=words)
+
+    def run(self) -> None:
+        """Read rounds until the end; errors are kept."""
         try:
             rounds = paced_rounds(
                 self._plc,
@@ -81,9 +108,10 @@ class Reading:
                 failed=self._failed,
                 voice=None,
                 sleep=self._sleep,
+                clock=self._clock,
             )
             for found in rounds:
-                self._ended.append(time.monotonic())
+                self._ended.append(self._clock())
                 self.last, self.lost = found, None
                 self._on_news()
         except _Stopped:
@@ -108,5 +136,5 @@ class Reading:
         self._on_news()
 
     def _sleep(self, seconds: float) -> None:
-        if self._stop.wait(seconds):
+        if self._wait(seconds):
             raise _Stopped

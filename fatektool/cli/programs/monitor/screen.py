@@ -10,9 +10,7 @@ from fatektool.cli.programs.monitor.keys import terminal_keys
 from fatektool.cli.programs.monitor.reading import Reading
 from fatektool.cli.programs.monitor.view import View
 from fatektool.cli.programs.monitor.why import say_of_program
-from fatektool.cli.programs.monitor.words import program_words
 from fatektool.jobs.monitor.live import Monitor
-from fatektool.jobs.monitor.same_program import Sameness
 from fatektool.ladder.drawing.text.letters import Letters
 from fatektool.ladder.drawing.text.live import LivePen
 
@@ -115,15 +113,7 @@ class Screen:
         return self._reading
 
     def _news(self) -> News:
-        reading = self._reading
-        if reading is None:
-            return News(None)
-        program = self._monitor.program
-        words = "" if program.sameness is Sameness.SAME or reading.last is None else program_words(program)
-        if reading.lost is not None:
-            lost = f"NO ANSWER since {reading.lost_since}: {reading.lost.message}; trying on"
-            return News(None, lost=lost, program=words)
-        return News(reading.last, reading.rate, program=words)
+        return News(None) if self._reading is None else self._reading.news
 
 
 def _text(rows: Sequence[Row]) -> Text:

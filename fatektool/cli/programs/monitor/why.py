@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from fatektool.cli.programs.monitor.documents import why_document
 from fatektool.cli.programs.monitor.words import WhyWords, program_words
-from fatektool.jobs.monitor.same_program import Sameness, SameProgram
+from fatektool.jobs.monitor.same_program import SameProgram
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -36,8 +36,8 @@ def explain(
 
 
 def say_of_program(program: SameProgram, voice: Voice) -> None:
-    """A warning where the PLC's program is another, or could not be compared; else a detail."""
-    if program.sameness is Sameness.SAME:
+    """A warning where the PLC's program is another, or was not compared as far as intended; else a detail."""
+    if program.is_certain:
         voice.detail(program_words(program))
     else:
         voice.warn(program_words(program))

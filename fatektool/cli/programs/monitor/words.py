@@ -259,6 +259,8 @@ def _carries(state: State) -> str:
 
 def _of_line(found: Condition) -> str:
     kind = found.leaf.instruction.form.text
+    if found.is_in_block:
+        return f"what {kind} in a block acts on is not known"
     line = {True: "carries", False: "does not carry", None: "is not known"}[found.carried]
     if kind == "INV":
         return f"the line before INV {line}"
