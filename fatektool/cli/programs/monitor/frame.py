@@ -10,7 +10,7 @@ from fatektool.ladder.circuit.nodes import Leaf
 from fatektool.ladder.circuit.reading import NoCircuit
 from fatektool.ladder.drawing.text.draw import NARROWEST
 from fatektool.ladder.drawing.text.letters import pieces, width_of, wrapped
-from fatektool.ladder.drawing.text.live import LivePen, Piece, Row, live_rows
+from fatektool.ladder.drawing.text.live import LivePen, Row, Strip, live_rows
 from fatektool.ladder.drawing.text.states import LiveStates, value_text
 from fatektool.ladder.power.values import shown_of
 from fatektool.project.comments import text_in
@@ -148,4 +148,4 @@ def _plain(text: str, width: int, *, is_lit: bool = False) -> Row:
                 break
             kept, used = kept + piece, used + columns
         text = f"{kept}>"
-    return (Piece(text, is_lit),)
+    return (Strip(text, is_lit),)

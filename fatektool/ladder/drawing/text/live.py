@@ -64,8 +64,8 @@ def _heavy() -> dict[tuple[int, int], str]:
 _HEAVY: Final = _heavy()
 
 
-class Piece(NamedTuple):
-    """A piece of a row.
+class Strip(NamedTuple):
+    """A part of a row.
 
     Attributes:
         text: its characters.
@@ -76,7 +76,7 @@ class Piece(NamedTuple):
     is_lit: bool = False
 
 
-Row: TypeAlias = tuple[Piece, ...]
+Row: TypeAlias = tuple[Strip, ...]
 
 
 class LivePen(Pen):
@@ -166,7 +166,7 @@ class LiveCanvas(Canvas):
                     self._lit_signs.add(place)
         for number, line in enumerate(self.lines_in_places()):
             yield tuple(
-                Piece("".join(text for _, text in group), is_lit)
+                Strip("".join(text for _, text in group), is_lit)
                 for is_lit, group in groupby(line, key=lambda each: (number, each[0]) in self._lit_signs)
             )
 
@@ -190,7 +190,7 @@ def live_rows(
         states: what the PLC has.
     """
     if is_empty(circuit):
-        yield (Piece(f"{pen.line(UP | DOWN)} (empty)"),)
+        yield (Strip(f"{pen.line(UP | DOWN)} (empty)"),)
     for count, band in enumerate(bands_of(circuit, comments, columns, pen, states)):
         if count:
             yield ()
