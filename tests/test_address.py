@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import fields
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 import pytest
@@ -16,14 +16,32 @@ import fatektool
 from fatektool.address import CHECKS, DEFAULTS, PlcAddress, Settings
 from fatektool.cli import run
 from fatektool.cli.plc.status import status_command
-from fatektool.cli.shared.connection_options import ROWS
+from fatektool.cli.shared.connection_options import ROWS, Row, connection_options
 from fatektool.errors import UsageError
 from fatektool.inventory.entries import parse_inventory
 from fatektool.protocol.registry import CODECS
 from fatektool.protocols import PROTOCOLS
 
+if TYPE_CHECKING:
+    from fatektool.cli.shared.connection import Connection
+    from fatektool.cli.shared.output import Voice
+
 FIELDS = {each.name for each in fields(PlcAddress)}
 OPTION = {row.field: max(row.words, key=len) for row in ROWS}
+
+OTHER: dict[str, Any] = {
+    "target": "tcp://127.0.0.1:1",
+    "station": 2,
+    "protocol": "mseries",
+    "baud": 19200,
+    "format": "8N1",
+    "timeout_s": 1.5,
+    "retries": 4,
+    "lock_wait_s": 5.0,
+    "read_only": True,
+    "low_latency": False,
+}
+"""Of each field a value that is not its default."""
 
 WRONG = [
     ("target", "", "expected a string such as tcp://192.168.2.3 or /dev/ttyUSB0, got ''"),
@@ -104,27 +122,38 @@ def test_every_field_is_an_option_with_the_field_s_default() -> None:
 
 
 def test_every_field_with_a_check_is_a_key_of_the_inventory() -> None:
-    assert FIELDS - CHECKS.keys() == {"trace", "modbus_map"}
-    text = (
-        '[plc.p]\ntarget = "tcp://h:1"\nstation = 2\nprotocol = "mseries"\nbaud = 19200\nformat = "8n1"\n'
-        "timeout_s = 1\nretries = 4\nlock_wait_s = 5\nread_only = true\nlow_latency = false\n"
-    )
-    found = parse_inventory(text.encode(), Path("fatek.toml"))
+    assert OTHER.keys() == CHECKS.keys() == FIELDS - {"trace", "modbus_map"}
+    keys = "".join(f"{key} = {_toml(value)}\n" for key, value in OTHER.items())
+    found = parse_inventory(f"[plc.p]\n{keys}".encode(), Path("fatek.toml"))
     assert found.faults == []
-    entry = found.plcs["p"]
-    assert entry.address == PlcAddress(
-        "tcp://h:1",
-        station=2,
-        protocol="mseries",
-        baud=19200,
-        format="8N1",
-        timeout_s=1.0,
-        retries=4,
-        lock_wait_s=5.0,
-        read_only=True,
-        low_latency=False,
-    )
-    assert all(getattr(entry.address, name) != DEFAULTS.get(name) for name in CHECKS)
+    assert found.plcs["p"].address == PlcAddress(**OTHER)
+
+
+@pytest.mark.parametrize("row", [row for row in ROWS if row.field in CHECKS.keys() - {"target"}])
+def test_an_option_goes_before_the_inventory_even_if_it_is_the_default(row: Row, tmp_path: Path) -> None:
+    """But for the one that can only be added: what is read-only stays so."""
+    file = tmp_path / "fatek.toml"
+    file.write_text("[plc.p]\n" + "".join(f"{key} = {_toml(value)}\n" for key, value in OTHER.items()))
+    found: list[Connection] = []
+
+    @click.command
+    @connection_options
+    def command(connection: Connection, voice: Voice) -> None:
+        assert not voice.json
+        found.append(connection)
+
+    def address(*words: str) -> PlcAddress:
+        command.main(["-p", "p", "--inventory", str(file), *words], standalone_mode=False)
+        return found.pop().address
+
+    assert address() == PlcAddress(**OTHER)
+    default = DEFAULTS[row.field]
+    wanted = "7O1" if default is None else default
+    value = [] if isinstance(wanted, bool) else [str(wanted)]
+    given = address(row.words[-1].partition("/")[0], *value)
+    changed = {row.field: True if row.field == "read_only" else wanted}
+    own_format = {"format": None} if row.field == "protocol" else {}
+    assert given == PlcAddress(**{**OTHER, **own_format, **changed})
 
 
 # --- what follows from the values -------------------------------------------------------------------------

@@ -78,7 +78,7 @@ def test_paths_are_relative_to_the_file(target: str, found: str) -> None:
 
 FAULTS = [
     ('[plc.p]\ntarget = "sim:"\nstatoin = 3', "line 3: plc.p: unknown key 'statoin': did you mean station?"),
-    ('[plc.p]\ntarget = "sim:"\nx = 3', "line 3: plc.p: unknown key 'x': expected one of baud, expect"),
+    ('[plc.p]\ntarget = "sim:"\nx = 3', "line 3: plc.p: unknown key 'x': expected one of baud, "),
     ('[plc.p]\ntarget = "sim:"\nstation = 0', "line 3: plc.p: station: expected 1 to 254, got 0; 0 is broad"),
     (
         '[plc.p]\ntarget = "tcp://h"\nprotocol = "modbus-tcp"\nstation = 256',

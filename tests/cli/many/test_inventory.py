@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from fatektool.inventory.values import KEYS
 from tests.cli.running import process, served
 
 if TYPE_CHECKING:
@@ -30,8 +31,7 @@ def test_check(cli: Cli) -> None:
     Path("fatek.toml").write_text(PRESS + "x = 1\n[plc.q]\n")
     done = cli("inventory", "check")
     assert done.code == 1
-    keys = "baud, expect, format, lock_wait_s, low_latency, project, protocol, read_only, reference, "
-    keys += "retries, spec, station, tags, target, timeout_s"
+    keys = ", ".join(sorted(KEYS))
     assert done.out.splitlines() == [
         f"fatek.toml: line 5: plc.press: unknown key 'x': expected one of {keys}",
         'fatek.toml: line 6: plc.q: target is missing: expected for example target = "tcp://HOST"',
