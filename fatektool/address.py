@@ -1,4 +1,4 @@
-"""A PLC's address: where it is and how it is asked, as one value.
+"""The address of a PLC and the settings of the connection to it, as one value.
 
 An option of the command line, a key of the inventory and an argument of ``connect`` are the same field here.
 Its default and its check are written here, once, so a wrong value is refused in the same words everywhere. A
@@ -30,7 +30,7 @@ DEFAULT_FORMATS: Final = "7E1; 8E1 for mseries and modbus-rtu"
 
 
 def default_format(codec: Codec) -> str:
-    """The line format of a protocol unless one is named: even parity and as many data bits as it needs."""
+    """The default line format of a protocol: even parity and as many data bits as it needs."""
     return f"{codec.data_bits or 8}E1"
 
 
@@ -48,7 +48,7 @@ def _checked(check: Check[Any], *, default: Any) -> Any:
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class PlcAddress(Value):
-    """Where a PLC is and how it is asked.
+    """The address of a PLC and the settings of the connection to it.
 
     Attributes:
         target: ``/dev/ttyUSB0``, ``COM3``, a pyserial URL, ``tcp://host[:500]``, ``udp://host[:500]``,
@@ -70,7 +70,7 @@ class PlcAddress(Value):
             the PLC's own.
 
     Raises:
-        UsageError: a value that its field cannot have.
+        UsageError: an invalid value.
     """
 
     target: str = field(metadata={"check": Text("tcp://192.168.2.3 or /dev/ttyUSB0")})
@@ -95,8 +95,8 @@ class PlcAddress(Value):
     def changed(self, **settings: Unpack[Settings]) -> PlcAddress:
         """This address with other settings.
 
-        A format is that of the protocol that it was given with, so another protocol has its own default. What
-        is read-only stays so.
+        A format belongs to the protocol that it was given with, so another protocol has its own default.
+        Read-only stays read-only.
         """
         if settings.get("protocol", self.protocol) != self.protocol:
             settings.setdefault("format", None)
@@ -108,10 +108,9 @@ class PlcAddress(Value):
         """Check the values against each other, before anything is opened or sent.
 
         Raises:
-            UsageError: no PLC can be asked at this address. The message begins with the field that is wrong,
-                or with the target.
+            UsageError: no PLC can have this address. The message begins with the wrong field, or the target.
         """
-        from fatektool.protocol.codec import require_station  # not for who asks for help alone
+        from fatektool.protocol.codec import require_station  # not needed for --help
 
         require_station(self.codec, self.station)
         where, data_bits = self.where, self.codec.data_bits
@@ -122,29 +121,29 @@ class PlcAddress(Value):
                 f"protocol {self.protocol} is for networks: expected tcp://HOST, got {self.target!r:.80}",
                 hint="on a serial line it is modbus-rtu or modbus-ascii",
             )
-        if data_bits is not None and self.line.data_bits < data_bits:
+        if data_bits is not None and self.line_settings.data_bits < data_bits:
             raise UsageError(
                 f"format: expected {data_bits} data bits, as {self.protocol} on a serial line needs, "
-                f"got {self.line.format}",
+                f"got {self.line_settings.format}",
                 hint=f"add --format {default_format(self.codec)} or {data_bits}N1, as the PLC's port is set",
             )
 
     @property
     def codec(self) -> Codec:
-        """What speaks the protocol, with its standard map."""
+        """The codec of the protocol, with the standard map."""
         return CODECS[self.protocol]
 
     @property
-    def line(self) -> LineSettings:
+    def line_settings(self) -> LineSettings:
         """Speed and format of the serial line."""
         return LineSettings(self.baud, self.format or default_format(self.codec))
 
     @property
     def where(self) -> Target:
-        """The target, taken apart, with the protocol's default port.
+        """The target, parsed, with the protocol's default port.
 
         Raises:
-            UsageError: it is none, or lacks a port.
+            UsageError: it is not a target, or has no port.
         """
         from fatektool.transport.target import Target
 
@@ -173,4 +172,4 @@ CHECKS: Final = {
     for each in fields(PlcAddress)
     if "check" in each.metadata
 }
-"""The check of each field that can be written as a text or a number: an option, a key of the inventory."""
+"""The check of each field that is an option and a key of the inventory."""

@@ -1,4 +1,4 @@
-"""What a value may be: its check and its words, the same for an option, a key of a file and an argument."""
+"""Checks of values: the same for an option, a key of a file and an argument."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ _SHOWN_CHARS = 60
 
 
 class Check(ABC, Generic[T]):
-    """What values there are.
+    """The check of a value.
 
     Attributes:
-        expected: the same in words, to follow "expected".
+        expected: the valid values as text, to follow "expected" in a message.
     """
 
     expected: str
@@ -29,7 +29,7 @@ class Check(ABC, Generic[T]):
         """The value, as it is used.
 
         Raises:
-            ValueError: it is none of them; says what was expected and what it is.
+            ValueError: an invalid value; the message has what was expected, and the value.
         """
         taken = self._taken(value)
         if taken is None:
@@ -37,7 +37,7 @@ class Check(ABC, Generic[T]):
         return taken
 
     def parse(self, text: str) -> T:
-        """The value that a text stands for, as on the command line.
+        """The value in a text, as on the command line.
 
         Raises:
             ValueError: as ``take``.
@@ -45,10 +45,10 @@ class Check(ABC, Generic[T]):
         return self.take(self._read(text))
 
     def require(self, name: str, value: object) -> T:
-        """The value of this name.
+        """The value of a setting of this name.
 
         Raises:
-            UsageError: as ``take``, with the name before it.
+            UsageError: as ``take``, with the name before the message.
         """
         try:
             return self.take(value)
@@ -57,15 +57,15 @@ class Check(ABC, Generic[T]):
 
     @abstractmethod
     def _taken(self, value: object) -> T | None:
-        """The value as it is used; None if it is none of them."""
+        """The value as it is used; None if it is invalid."""
 
     def _read(self, text: str) -> object:
-        """What a text stands for; the text itself if it stands for nothing else."""
+        """The value in a text; the text itself if it is no number."""
         return text
 
 
 class WholeNumber(Check[int]):
-    """A whole number, both ends included."""
+    """A whole number, from ``least`` to ``most``."""
 
     def __init__(self, least: int, most: int) -> None:
         self.least = least
@@ -84,7 +84,7 @@ class WholeNumber(Check[int]):
 
 
 class Seconds(Check[float]):
-    """A time in seconds, both ends included; ``above`` leaves the lower end out."""
+    """Seconds, from ``least`` to ``most``; with ``above``, ``least`` itself is invalid."""
 
     def __init__(self, least: float, most: float, *, above: bool = False) -> None:
         self.least = least
@@ -97,7 +97,7 @@ class Seconds(Check[float]):
     def _taken(self, value: object) -> float | None:
         if not isinstance(value, int | float) or isinstance(value, bool):
             return None
-        if not self.least <= value <= self.most or (self.above and value == self.least):  # nor is it NaN
+        if not self.least <= value <= self.most or (self.above and value == self.least):  # NaN fails too
             return None
         return float(value)
 
@@ -141,5 +141,5 @@ class Text(Check[str]):
 def _shown(value: object) -> str:
     try:
         return f"{value!r:.{_SHOWN_CHARS}}"
-    except (ValueError, RecursionError):  # a whole number of thousands of digits
+    except (ValueError, RecursionError):  # a number of thousands of digits
         return "a very long number"

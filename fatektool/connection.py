@@ -48,17 +48,17 @@ def connect(
 
     Args:
         target: ``/dev/ttyUSB0``, ``tcp://192.168.2.3`` and others, as of ``PlcAddress``; or a whole address.
-        needs: the commands without which there is nothing to do here.
-        limit: ends everything on this line when it is over; None for no limit.
-        lend: True to let others have the line between two rounds, with ``Plc.lend``.
+        needs: commands that the protocol must have.
+        limit: the time after which every exchange on this line ends; None for no limit.
+        lend: True to let other processes use the line between two rounds, with ``Plc.lend``.
         shared: keeps the line open for the next PLC on it; not with ``trace``.
-        note: gets messages for a curious user.
-        waiting: gets a message, at once, that says who has the line, if it must be waited for.
-        warn: gets a message, once, if answers come later than ``timeout_s``.
+        note: gets details, for ``-v``.
+        waiting: gets a message with the process that has the line, if it must be waited for.
+        warn: gets a message, once, if answers are received later than ``timeout_s``.
         settings: the other fields of ``PlcAddress``: ``station=3``, ``protocol="mseries"``, ``timeout_s=2``.
 
     Raises:
-        UsageError: a value is wrong, or the protocol lacks what is needed.
+        UsageError: a wrong value, or the protocol does not have one of ``needs``.
         LineError: the port or gateway cannot be opened; ``PortBusy`` among them.
     """
     address = target.changed(**settings) if isinstance(target, PlcAddress) else PlcAddress(target, **settings)
@@ -76,13 +76,13 @@ def connect(
         if shared is None or address.trace is not None or address.where.kind is TargetKind.SIM:
             transport = opened(stack, locks.append, lines.append if lend else None)
         else:
-            transport, locks = shared.take(address.target, address.line, opened), shared.locks
+            transport, locks = shared.take(address.target, address.line_settings, opened), shared.locks
         transport = _with_patience(transport, address.target, patience, limit)
         link = Link(
             transport,
             codec,
             address.station,
-            address.line,
+            address.line_settings,
             timeout_s=address.timeout_s,
             retries=address.retries,
             read_only=address.read_only,
@@ -118,7 +118,7 @@ def _use_own_map(link: Link) -> None:
 
 
 def _with_patience(transport: Transport, target: str, patience: Patience, limit: Limit | None) -> Transport:
-    """The line within a limit of time; a connection that fails is made anew after a pause, within it too."""
+    """The line with its time limit; a lost connection is made again after a pause, within that limit."""
     if limit is not None:
         from fatektool.transport.limit import LimitedTransport
 
@@ -127,16 +127,16 @@ def _with_patience(transport: Transport, target: str, patience: Patience, limit:
 
 
 def _end_turn(shared: SharedLine, link: Link) -> None:
-    """Leave a line open that is in order; close one on which an answer may be on its way."""
+    """Keep the line open, unless a late answer may still be received on it."""
     if link.receiver.needs_fence:
         shared.close()
 
 
 def _hand_over_doubt(lock: PortLock, link: Link) -> None:
-    """Begin behind a fence where the one before left an answer on its way; leave word of one of our own.
+    """Start with a fence if the process before left an answer unreceived; record the same for the next one.
 
-    A doubt that no fence took away is not handed on a second time: by then the line was listened to for as
-    long as a PLC may take, and a PLC without loopbacks (4E) is not to be locked out for ever.
+    A doubt that no fence removed is not passed on a second time: by then the line was read for as long as a
+    PLC may take, and a PLC without loopbacks (4E) must not be blocked for ever.
     """
     inherited, fences = lock.found_doubt, link.counters.fences
     if inherited:
@@ -160,15 +160,16 @@ def open_line(
 
     Args:
         address: of a PLC on it.
-        stack: closes the line and gives its lock back when it ends.
-        on_lock: gets the lock of a real line, each time that it is taken.
-        on_lent: gets a line that can be lent; None if it shall not be. A modem's call goes on.
-        note: gets messages for a curious user.
-        waiting: gets a message that says who has the line, if it must be waited for.
-        patience: how often a connection that is refused or closed is tried.
+        stack: closes the line and releases its lock when it ends.
+        on_lock: gets the lock of the line, each time that it is locked.
+        on_lent: gets the line if it can be released between two rounds; None to keep it. A call is never
+            released.
+        note: gets details, for ``-v``.
+        waiting: gets a message with the process that has the line, if it must be waited for.
+        patience: retries of a connection that is refused or closed.
 
     Raises:
-        UsageError: the target is none.
+        UsageError: it is not a target.
         LineError: the port or gateway cannot be opened; ``PortBusy`` among them.
     """
     where = address.where
@@ -204,7 +205,7 @@ def _open(
         return open_simulated(address, stack, lock_wait_s, on_lock, waiting)
     return open_transport(
         where,
-        address.line,
+        address.line_settings,
         stack,
         lock_wait_s=lock_wait_s,
         low_latency=address.low_latency,

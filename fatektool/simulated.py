@@ -1,6 +1,6 @@
 """The line to a simulated PLC in this process: ``sim:``, and ``sim:FILE``.
 
-It is on a clock of its own. ``sim:FILE`` keeps its memory in FILE after each change, as a real PLC would.
+It has a clock of its own. ``sim:FILE`` saves its memory in FILE after each change, as a real PLC keeps it.
 """
 
 from __future__ import annotations
@@ -29,18 +29,18 @@ def open_simulated(
     on_lock: Callable[[PortLock], object],
     waiting: Callable[[str], None],
 ) -> MemoryTransport:
-    """Make a simulated PLC, or read it from its file, which is locked, and open the line to it.
+    """Make a simulated PLC, or load it from its file, which is locked, and open the line to it.
 
     Args:
-        address: its own; a file has PLCs with stations of their own.
-        stack: closes the line and gives the lock back when it ends.
-        lock_wait_s: how long to wait for another process that has the file.
+        address: its address; PLCs in a file have their own stations.
+        stack: closes the line and releases the lock when it ends.
+        lock_wait_s: how long to wait for another process that has the file, in seconds.
         on_lock: gets the lock of the file.
-        waiting: gets a message that says who has the file, if it must be waited for.
+        waiting: gets a message with the process that has the file, if it must be waited for.
 
     Raises:
         PortBusy: another process has the file.
-        DataError: the file is no memory of a simulated PLC.
+        DataError: the file is not the memory of a simulated PLC.
     """
     where = address.where
     state = Path(where.path) if where.path else None
@@ -50,12 +50,12 @@ def open_simulated(
         stack.callback(lock.release)
         on_lock(lock)
     is_kept = state is not None and state.exists()
-    station, line = address.station, address.line
+    station, settings = address.station, address.line_settings
     simulation = build_simulation(
         None if is_kept else [station if 1 <= station <= _LAST_STATION else 1],
         protocol=address.protocol,
         state=state,
-        baud=line.baud,  # of the clock's time, which costs none: a test of so many seconds has an end
-        bits_per_char=line.byte_time_s * line.baud,
+        baud=settings.baud,  # of simulated time: a test of so many seconds must end
+        bits_per_char=settings.byte_time_s * settings.baud,
     )
     return stack.enter_context(MemoryTransport(simulation.line(), where.text))

@@ -10,13 +10,14 @@ from unittest.mock import patch
 from fatektool import connection
 from fatektool.errors import TransportTimeout
 from fatektool.transport import tcp, udp
-from fatektool.transport.base import Transport
+from fatektool.transport.base import WrappedTransport
 from fatektool.transport.serial_line import port as serial_port
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from fatektool.transport.base import LineSettings
+    from fatektool.transport.base import Transport
+
 
 _LOOK_S = 0.005
 """How long a client waits for real before it asks whether anything can come."""
@@ -54,7 +55,7 @@ class Clock(Protocol):
         """
 
 
-class Clocked(Transport):
+class Clocked(WrappedTransport):
     """A medium on such a clock.
 
     Args:
@@ -63,13 +64,11 @@ class Clocked(Transport):
     """
 
     def __init__(self, inner: Transport, clock: Clock) -> None:
-        self._inner = inner
+        super().__init__(inner)
         self._clock = clock
         self._closed = False
-        self.name = inner.name
-        self.line = inner.line
         self.clock = clock.now
-        clock.opened(keeps=inner.line is not None)
+        clock.opened(keeps=inner.serial_settings is not None)
 
     def read(self, max_bytes: int, timeout_s: float) -> bytes:
         deadline = self.clock() + timeout_s
@@ -84,7 +83,7 @@ class Clocked(Transport):
             else:
                 self._clock.read(len(data))
                 return data
-        raise TransportTimeout(f"{self.name}: nothing came within {timeout_s:.3f} s")
+        raise TransportTimeout(f"{self.name}: nothing received within {timeout_s:.3f} s")
 
     def write(self, data: bytes) -> None:
         self._clock.asked(len(data))
@@ -100,16 +99,6 @@ class Clocked(Transport):
         if not self._closed:
             self._closed = True
             self._clock.closed()
-
-    def set_line(self, line: LineSettings) -> None:
-        self._inner.set_line(line)
-        self.line = self._inner.line
-
-    def set_dtr(self, *, on: bool) -> bool:
-        return self._inner.set_dtr(on=on)
-
-    def renew(self) -> None:
-        self._inner.renew()
 
 
 @contextmanager

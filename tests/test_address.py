@@ -171,7 +171,7 @@ def test_an_option_goes_before_the_inventory_even_if_it_is_the_default(row: Row,
 )
 def test_what_a_protocol_brings_with_it(protocol: str, line: str, port: int | None) -> None:
     address = PlcAddress("tcp://h", protocol=protocol)
-    assert str(address.line) == line
+    assert str(address.line_settings) == line
     assert address.codec is CODECS[protocol]
     if port is None:
         with pytest.raises(UsageError, match="expected a port"):

@@ -107,7 +107,7 @@ class _Report(Value):
             found += "; nothing was written"
         return NoAnswer(
             f"no answer from station {state.station} on {state.transport.name} "
-            f"({state.transport.line or state.codec.name}) to {asked} {self.effort}: {found}",
+            f"({state.transport.serial_settings or state.codec.name}) to {asked} {self.effort}: {found}",
             hint=self._advice(),
             station=state.station,
             target=state.transport.name,
@@ -165,7 +165,7 @@ AT_AN_ETHERNET_MODULE: Final = (
 
 def over_network(transport: Transport) -> bool:
     """True if there may be an Ethernet module in between."""
-    return transport.line is None and transport.name.startswith(("tcp://", "udp://"))
+    return transport.serial_settings is None and transport.name.startswith(("tcp://", "udp://"))
 
 
 def _named(request: Request[Any]) -> str:

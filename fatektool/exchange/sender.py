@@ -39,7 +39,7 @@ class Sender:
         self._numbers = state.codec.numbers
         self._unique_fences = state.codec.unique_fences
         # A gateway keeps the pause between frames itself.
-        quiet = state.codec.quiet_chars if state.transport.line is not None else 0.0
+        quiet = state.codec.quiet_chars if state.transport.serial_settings is not None else 0.0
         self._quiet_s = max(quiet * state.byte_time_s, _LEAST_QUIET_S) if quiet else 0.0
         self._quiet_from = state.transport.clock()
 

@@ -1,14 +1,14 @@
-"""What a medium is to the rest of the package, and how long a byte takes on a serial line.
+"""The interface of all transports, and the settings of a serial line.
 
 Contract of a transport:
 
-- ``read`` gives at least one byte, or raises ``TransportTimeout`` (now and then before its time: whoever
-  waits looks at the clock) or ``TransportClosed``;
-- ``write`` writes all, in one piece;
-- ``drain`` gives what lies in the input already, without waiting;
+- ``read`` returns at least one byte, or raises ``TransportTimeout`` (sometimes too early: the caller checks
+  the clock) or ``TransportClosed``;
+- ``write`` writes all bytes in one call;
+- ``drain`` returns what was received already, without waiting;
 - ``close`` may be called twice.
 
-Errors of the operating system become the project's here and nowhere else.
+Errors of the operating system become the project's own in transports and nowhere else.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ if TYPE_CHECKING:
     from typing import Self
 
 WRITE_TIMEOUT_S: Final = 5.0
-"""How long a medium may refuse to take a request: a flow control that never lets go, a dead pty."""
+"""How long a write may block, because of flow control or a pty that nobody reads."""
 
 MOST_SAID: Final = 120
-"""So many of the first bytes of a connection are kept: in them a gateway may say why it closes it."""
+"""The first bytes of a connection that are kept: a gateway may send the reason why it closes it."""
 
 DRAIN_LIMIT: Final = 1 << 16
-"""A line that babbles on is not drained for ever."""
+"""At most so many bytes are drained: a line that never stops sending is not read for ever."""
 
 
 class LineFormat(OneOf):
@@ -58,7 +58,7 @@ class LineSettings(Value):
     """A serial line's speed and format; the factory setting is 9600 7E1 [E:factory].
 
     Raises:
-        UsageError: a speed or format that no line has.
+        UsageError: an invalid speed or format.
     """
 
     baud: int = 9600
@@ -96,22 +96,22 @@ class Transport(ABC):
     """A medium that carries bytes to a PLC and back.
 
     Attributes:
-        name: the medium in words, for messages.
-        clock: the clock by which its time-outs run, in seconds.
-        line: port parameters in words for a serial line, else None.
+        name: its name in messages.
+        clock: the clock of its time-outs, in seconds.
+        serial_settings: speed and format of a serial line as text, "9600 7E1"; None for another medium.
     """
 
     name: str
-    line: str | None = None
+    serial_settings: str | None = None
     clock: Callable[[], float] = staticmethod(time.monotonic)
 
     @abstractmethod
     def read(self, max_bytes: int, timeout_s: float) -> bytes:
-        """Read 1 to ``max_bytes`` bytes, whatever is there first; a datagram comes whole.
+        """Read 1 to ``max_bytes`` bytes, as soon as there are any; a datagram is returned whole.
 
         Raises:
-            TransportTimeout: nothing came within ``timeout_s`` seconds.
-            TransportClosed: the other side or the device is gone.
+            TransportTimeout: nothing was received within ``timeout_s`` seconds.
+            TransportClosed: the connection or the device is lost.
         """
 
     @abstractmethod
@@ -119,31 +119,31 @@ class Transport(ABC):
         """Write all of ``data``.
 
         Raises:
-            TransportTimeout: the medium takes no bytes.
-            TransportClosed: the other side or the device is gone.
+            TransportTimeout: the write blocks.
+            TransportClosed: the connection or the device is lost.
         """
 
     @abstractmethod
     def drain(self) -> bytes:
-        """Take what lies in the input already; empty if nothing does, or the medium is gone."""
+        """Return what was received already; empty if that is nothing, or the medium is lost."""
 
     @abstractmethod
     def close(self) -> None:
-        """Close the medium; again is fine."""
+        """Close the medium; may be called again."""
 
-    def set_line(self, line: LineSettings) -> None:  # noqa: B027  # most media have no speed of their own
-        """Take another speed and format, if the medium has any.
+    def configure(self, settings: LineSettings) -> None:  # noqa: B027  # most media have no speed of their own
+        """Set speed and format, if the medium has any.
 
         Raises:
-            LineError: it does not take these.
+            LineError: it does not have these.
         """
 
     def set_dtr(self, *, on: bool) -> bool:  # noqa: ARG002  # most media have no such wire
-        """Switch Data Terminal Ready, at whose fall a modem hangs up; False where there is none."""
+        """Switch Data Terminal Ready, with which a modem hangs up; returns False if there is none."""
         return False
 
     def renew(self) -> None:  # noqa: B027  # most media have nothing to renew
-        """Start afresh after a long silence: a connection is made anew at the next write."""
+        """After a long silence: close a connection, so that the next write makes a new one."""
 
     def __enter__(self) -> Self:
         return self
@@ -152,3 +152,46 @@ class Transport(ABC):
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+
+class WrappedTransport(Transport):
+    """A transport that changes part of what another does.
+
+    Args:
+        inner: the other.
+    """
+
+    def __init__(self, inner: Transport) -> None:
+        self._inner = inner
+        self.name = inner.name
+        self.serial_settings = inner.serial_settings
+        self.clock = inner.clock
+
+    def read(self, max_bytes: int, timeout_s: float) -> bytes:
+        """Read from the other."""
+        return self._inner.read(max_bytes, timeout_s)
+
+    def write(self, data: bytes) -> None:
+        """Write to the other."""
+        self._inner.write(data)
+
+    def drain(self) -> bytes:
+        """Drain the other."""
+        return self._inner.drain()
+
+    def configure(self, settings: LineSettings) -> None:
+        """Set the other's speed and format."""
+        self._inner.configure(settings)
+        self.serial_settings = self._inner.serial_settings
+
+    def set_dtr(self, *, on: bool) -> bool:
+        """Switch the other's DTR."""
+        return self._inner.set_dtr(on=on)
+
+    def renew(self) -> None:
+        """Renew the other."""
+        self._inner.renew()
+
+    def close(self) -> None:
+        """Close the other."""
+        self._inner.close()

@@ -1,13 +1,13 @@
-"""Which Ethernet modules answer to a call on UDP: undocumented, and used by a driver that runs in plants.
+"""Discovery of Ethernet modules by UDP: undocumented, but used by a driver that runs in plants.
 
 ::
 
-    13 0C 2F 9B 77 70 89 AA    to UDP port 111 of an address that the user names, a broadcast address too
+    13 0C 2F 9B 77 70 89 AA    to UDP port 111 of an address that the user gives, also a broadcast address
     09 50 83 04 5A 22 00 22    the same
     <- to UDP port 53238       351 bytes or more: firmware, MAC, address, gateway, mask, name, description,
-                               FACON port (01F4 = 500), Modbus port (01F6 = 502); at which places is not known
+                               FACON port (01F4 = 500), Modbus port (01F6 = 502); their offsets are unknown
 
-So of an answer its sender and its bytes are given, and nothing is read out of them: [E:discovery].
+So only the sender and the bytes of an answer are returned: [E:discovery].
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ class Answer(NamedTuple):
     """One answer.
 
     Attributes:
-        address: of its sender.
-        port: of its sender.
-        data: all of it.
+        address: IP address of the sender.
+        port: UDP port of the sender.
+        data: its bytes.
     """
 
     address: str
@@ -51,17 +51,17 @@ def discover(
     answer_port: int = ANSWER_PORT,
     on_answer: Callable[[Answer], object] = lambda _: None,
 ) -> list[Answer]:
-    """Call once, to this address alone, and listen.
+    """Send the requests once, to this address only, and receive answers.
 
     Args:
-        host: a name or address, one of a network (192.168.2.255) too.
-        port: of the modules.
-        listen_s: for how long.
-        answer_port: of this computer, to which they answer.
-        on_answer: is told each answer at once; the same one again is left out.
+        host: a name or address, also a broadcast address (192.168.2.255).
+        port: UDP port of the modules.
+        listen_s: how long to wait for answers, in seconds.
+        answer_port: UDP port of this computer, to which modules answer.
+        on_answer: gets each new answer at once.
 
     Raises:
-        LineError: the name is not known, the port is in use here, or nothing can be sent there.
+        LineError: unknown name, the port is in use on this computer, or sending fails.
     """
     try:
         family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_DGRAM)[0]
@@ -80,7 +80,7 @@ def discover(
         except OSError as error:
             raise LineError(
                 f"cannot send to {host}, UDP port {port}: {error.strerror or error}",
-                hint="check the address and this computer's network",
+                hint="check the address and the network of this computer",
             ) from error
         until = time.monotonic() + listen_s
         while (rest := until - time.monotonic()) > 0 and len(found) < _MOST_ANSWERS:
@@ -89,7 +89,7 @@ def discover(
                 data, sender = caller.recvfrom(_DATAGRAM)
             except TimeoutError:
                 break
-            except OSError:  # some systems report here that a port is closed over there
+            except OSError:  # some systems report here that the port of the other side is closed
                 continue
             answer = Answer(str(sender[0]), int(sender[1]), data)
             if data not in REQUESTS and answer not in found:
@@ -103,6 +103,6 @@ def _take_port(caller: socket.socket, port: int) -> None:
         caller.bind(("", port))
     except OSError as error:
         raise LineError(
-            f"UDP port {port} of this computer cannot be had: {error.strerror or error}",
-            hint="modules answer to this port alone: end the other program that listens there",
+            f"UDP port {port} of this computer cannot be used: {error.strerror or error}",
+            hint="modules answer only to this port: close the other program that uses it",
         ) from error

@@ -1,9 +1,9 @@
-"""A line that is lent: between two jobs of one process, others may have it.
+"""A line that other processes may use between two rounds of this one.
 
-Who works in rounds (``watch``) keeps its line open while nobody else wants it, so that nothing changes on the
-wire: no connection is made anew, no DTR falls. It is closed and its lock given back as soon as somebody waits
-for the lock, and in every long pause, as who waits then may know no locks: another computer, the vendor's
-program. Two processes never have one port open at once: each would take bytes that the other waits for.
+A process that works in rounds (``watch``) keeps its line open while nobody waits for it: no new connection,
+no change of DTR. It closes the line and releases its lock as soon as another process waits for the lock, and
+in every long pause, because another computer or the vendor's program does not know the lock. Two processes
+never have one port open at the same time: each would receive bytes for the other.
 """
 
 from __future__ import annotations
@@ -29,12 +29,13 @@ _HAND_OVER_LOOKS: Final = 100
 
 
 class LentTransport(Transport):
-    """A medium that can be given back and taken again.
+    """A medium that can be released and opened again.
 
     Args:
-        opened: opens it and locks it, waiting so long; the stack closes both, and the callback gets the lock.
-        wait_s: how long to wait for another process at first; later on, as long as it takes.
-        on_lock: is given the lock, each time that it is taken.
+        opened: locks and opens it, waiting so many seconds; the stack closes both, and the callback gets the
+            lock.
+        wait_s: seconds to wait for another process at first; later there is no limit.
+        on_lock: gets the lock, each time that it is locked.
 
     Raises:
         LineError: it cannot be opened.
@@ -51,14 +52,14 @@ class LentTransport(Transport):
         self._settings: LineSettings | None = None
         self._lock: PortLock | None = None
         self._inner: Transport | None = None
-        self._stopped_at: float | None = None  # a simulated PLC's clock begins anew with it
+        self._stopped_at: float | None = None  # the clock of a simulated PLC starts again at 0
         self._clock_offset = 0.0
         self._stack = ExitStack()
         self._open(wait_s)
         self.clock = self._now
 
     def take(self) -> None:
-        """Have the line, however long it takes until others let it go.
+        """Open the line again, however long another process has it.
 
         Raises:
             LineError: it cannot be opened.
@@ -67,18 +68,18 @@ class LentTransport(Transport):
             self._open(inf)
 
     def give_back(self) -> None:
-        """Close the line and let others have it."""
+        """Close the line and release its lock."""
         if self._inner is not None:
             self._stopped_at = self._now()
             self._inner = self._lock = None
             self._stack.close()
 
     def lend(self, seconds: float, sleep: Callable[[float], object] | None = None) -> None:
-        """Wait, and let others have the line meanwhile if they want it; ``take`` it again behind this.
+        """Wait, and release the line if another process waits for it; call ``take`` after it.
 
         Args:
             seconds: how long to wait.
-            sleep: waits; it may raise to end the waiting. None for ``time.sleep``.
+            sleep: waits so many seconds; it may raise to end the wait. None for ``time.sleep``.
         """
         sleep = sleep or time.sleep
         if seconds >= LONG_PAUSE_S:
@@ -93,7 +94,7 @@ class LentTransport(Transport):
             seconds -= step
 
     def _hand_over(self, lock: PortLock) -> None:
-        """Let go, and give who waits the time to take it."""
+        """Release the line, and give the waiting process time to lock it."""
         self.give_back()
         for _ in range(_HAND_OVER_LOOKS):
             if not lock.wanted():
@@ -104,11 +105,11 @@ class LentTransport(Transport):
         with ExitStack() as stack:
             inner = self._opened(stack, wait_s, self._locked)
             if self._settings is not None:
-                inner.set_line(self._settings)
+                inner.configure(self._settings)
             self._stack = stack.pop_all()
         if self._stopped_at is not None:
             self._clock_offset = self._stopped_at - inner.clock()
-        self._inner, self.name, self.line = inner, inner.name, inner.line
+        self._inner, self.name, self.serial_settings = inner, inner.name, inner.serial_settings
 
     def _locked(self, lock: PortLock) -> None:
         self._lock = lock
@@ -121,35 +122,35 @@ class LentTransport(Transport):
 
     def _medium(self) -> Transport:
         if self._inner is None:
-            raise TransportClosed(f"{self.name}: the line is given back")
+            raise TransportClosed(f"{self.name}: the line was released")
         return self._inner
 
     def read(self, max_bytes: int, timeout_s: float) -> bytes:
-        """Read what is there first."""
+        """Read what is received first."""
         return self._medium().read(max_bytes, timeout_s)
 
     def write(self, data: bytes) -> None:
-        """Write all of it."""
+        """Write all of ``data``."""
         self._medium().write(data)
 
     def drain(self) -> bytes:
-        """Take what is there."""
+        """Return what was received already."""
         return b"" if self._inner is None else self._inner.drain()
 
-    def set_line(self, line: LineSettings) -> None:
-        """Take another speed and format, the next time too."""
-        self._medium().set_line(line)
-        self._settings, self.line = line, self._medium().line
+    def configure(self, settings: LineSettings) -> None:
+        """Set speed and format, also for the next time that it is opened."""
+        self._medium().configure(settings)
+        self._settings, self.serial_settings = settings, self._medium().serial_settings
 
     def set_dtr(self, *, on: bool) -> bool:
         """Switch DTR."""
         return self._medium().set_dtr(on=on)
 
     def renew(self) -> None:
-        """Start afresh."""
+        """Close a connection; the next write makes a new one."""
         if self._inner is not None:
             self._inner.renew()
 
     def close(self) -> None:
-        """Close the medium and give its lock back."""
+        """Close the medium and release its lock."""
         self.give_back()

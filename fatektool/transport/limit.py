@@ -1,7 +1,7 @@
-"""An overall limit of time for one PLC, over any medium: whatever is asked on it ends when that runs out.
+"""A time limit for one PLC, over any medium: every exchange ends when the time is over.
 
-Looked at before each write and at least every quarter of a second of a read. So no thread that talks to a PLC
-outlives its limit, or an interrupt, by more than it takes to connect or to write.
+It is checked before each write, and at least every quarter of a second in a read. So a thread that talks to a
+PLC ends at its limit, or after an interrupt, with a delay of at most one connect or one write.
 """
 
 from __future__ import annotations
@@ -11,24 +11,24 @@ import time
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import DeadlinePassed
-from fatektool.transport.base import Transport
+from fatektool.transport.base import WrappedTransport
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fatektool.errors import FatektoolError
-    from fatektool.transport.base import LineSettings
+    from fatektool.transport.base import Transport
 
 _LOOK_S: Final = 0.25
 
 
 class Limit:
-    """How long one PLC may take.
+    """The time that one PLC may take.
 
     Args:
-        seconds: from now on.
-        stop: set from anywhere, it ends the PLC's turn early; None for nobody who would.
-        clock: seconds; for tests.
+        seconds: the time, from now on.
+        stop: when it is set, the time is over; None if only the clock ends it.
+        clock: in seconds; for tests.
     """
 
     def __init__(
@@ -45,23 +45,23 @@ class Limit:
 
     @property
     def stopped(self) -> bool:
-        """True if it was ended early."""
+        """True if ``stop`` was set."""
         return self._stop.is_set()
 
     @property
     def rest_s(self) -> float:
-        """What is left, at least 0."""
+        """Remaining seconds, at least 0."""
         return 0.0 if self._stop.is_set() else max(0.0, self._end - self._clock())
 
     def pause(self, seconds: float) -> None:
-        """Wait so many seconds, or until it is over."""
+        """Wait so many seconds, or until the time is over."""
         self._stop.wait(min(seconds, self.rest_s))
 
     def require_rest(self) -> float:
-        """What is left, in seconds.
+        """Remaining seconds, more than 0.
 
         Raises:
-            DeadlinePassed: nothing.
+            DeadlinePassed: none remain.
         """
         rest = self.rest_s
         if not rest:
@@ -69,55 +69,35 @@ class Limit:
         return rest
 
     def passed(self, cause: FatektoolError | None = None) -> DeadlinePassed:
-        """The error of a limit that is over.
+        """The error for a limit that is over.
 
         Args:
-            cause: what came of it, if that tells more.
+            cause: an error that the end of the time caused, if its message is worth adding.
         """
         seen = "" if cause is None or isinstance(cause, DeadlinePassed) else f" ({cause.message})"
         return DeadlinePassed(
-            f"given up, its limit of {self.seconds:g} s is over{seen}",
-            hint="is the line slow or bad? see 'fatektool doctor', or give it more with --deadline",
+            f"stopped at the time limit of {self.seconds:g} s{seen}",
+            hint="if the line is slow or disturbed: 'fatektool doctor'; or allow more time with --deadline",
         )
 
 
-class LimitedTransport(Transport):
-    """A transport that works as long as the limit lasts.
+class LimitedTransport(WrappedTransport):
+    """A transport that works until the time is over.
 
     Args:
         inner: the medium.
-        limit: the limit.
+        limit: the time.
     """
 
     def __init__(self, inner: Transport, limit: Limit) -> None:
-        self._inner = inner
+        super().__init__(inner)
         self._limit = limit
-        self.name = inner.name
-        self.line = inner.line
-        self.clock = inner.clock
 
     def read(self, max_bytes: int, timeout_s: float) -> bytes:
-        """Read, for a quarter of a second at most; the caller looks at its clock and comes again."""
-        return self._inner.read(max_bytes, min(timeout_s, _LOOK_S, self._limit.require_rest()))
+        """Read, for a quarter of a second at most; the caller checks its clock and calls again."""
+        return super().read(max_bytes, min(timeout_s, _LOOK_S, self._limit.require_rest()))
 
     def write(self, data: bytes) -> None:
-        """Write all of it."""
+        """Write all of ``data``."""
         self._limit.require_rest()
-        self._inner.write(data)
-
-    def drain(self) -> bytes:
-        """Take what is there."""
-        return self._inner.drain()
-
-    def set_line(self, line: LineSettings) -> None:
-        """Take another speed and format."""
-        self._inner.set_line(line)
-        self.line = self._inner.line
-
-    def renew(self) -> None:
-        """Start afresh."""
-        self._inner.renew()
-
-    def close(self) -> None:
-        """Close the medium."""
-        self._inner.close()
+        super().write(data)

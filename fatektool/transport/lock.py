@@ -1,19 +1,18 @@
-"""One process a line: a lock that dies with its process.
+"""A lock for each port or gateway: one process uses it at a time.
 
-Frames of two programs on one line would answer each other's questions, so a port or gateway is used by one
-process at a time. The lock is the operating system's (``flock``; on Windows a locked byte), on a small file
-whose content names the holder for the one who waits. It goes with the process, however that ends: a file left
-behind stops nobody, and cron is never held up by one.
+With two programs on one line, each would receive the answers of the other. The lock is the operating system's
+(``flock``; on Windows a locked byte), on a small file that contains the process that holds it. The system
+releases it when the process ends, in whatever way. So a file that is left over blocks nothing, and cron never
+stops because of one.
 
-What it says when the lock is free tells one thing: the holder before was killed, or left without the answer
-to its last request. That answer may still come, to whoever is next: ``found_doubt`` is True then.
+If the file is not empty although the lock is free, the process before was killed, or ended without the answer
+to its last request. That answer may still be received: then ``found_doubt`` is True.
 
-The file is made for all users to lock, in a folder in which all users may make files: one port, one file,
-whoever asks. Where the system has no such folder, or gives a service a ``/tmp`` of its own, a folder for all
-is to be named in FATEKTOOL_LOCK_DIR.
+All users can lock the file; it is in a folder in which all users may create files, so that one port has one
+file, whoever uses it. If the system has no such folder, or a service has its own ``/tmp``, set
+FATEKTOOL_LOCK_DIR to a folder for all.
 
-Who waits says so by a second lock, on the queue beside the first, so that a holder who could let go knows
-(``wanted``).
+A process that waits holds a second lock, the queue, so that the first process can know it (``wanted``).
 """
 
 from __future__ import annotations
@@ -53,9 +52,9 @@ _held: set[str] = set()
 
 
 def lock_folder() -> str:
-    """Where lock files lie: the first folder in which *every* user may make files, whoever asks.
+    """The folder of lock files: the first in which *every* user may create files.
 
-    That root may write to ``/run/lock`` is not enough: others would lock elsewhere.
+    It is not enough that root may write to ``/run/lock``: other users would lock in another folder.
     """
     named = os.environ.get("FATEKTOOL_LOCK_DIR")
     if named:
@@ -64,7 +63,7 @@ def lock_folder() -> str:
 
 
 def shared_folder() -> str | None:
-    """The folder for all users; None where there is none, as on Windows."""
+    """The folder for all users; None if there is none, as on Windows."""
     for folder in _SHARED if os.name == "posix" else ():
         with contextlib.suppress(OSError):
             if os.stat(folder).st_mode & _FOR_ALL == _FOR_ALL:  # noqa: PTH116  # pathlib is loaded later
@@ -80,12 +79,12 @@ def _own_folder() -> str:
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Holder(Value):
-    """Who has a lock, as far as its file tells.
+    """The process that holds a lock, as written in its file.
 
     Attributes:
-        pid: the process.
-        since: when it took the lock, UTC, RFC 3339; empty if unknown.
-        command: its command line, cut short; empty if unknown.
+        pid: the process id.
+        since: the time at which it locked, UTC, RFC 3339; empty if unknown.
+        command: its command line, shortened; empty if unknown.
     """
 
     pid: int
@@ -93,12 +92,12 @@ class Holder(Value):
     command: str = ""
 
     def __str__(self) -> str:
-        told = ", ".join(part for part in (self.command, self.since and f"since {self.since}") if part)
-        return f"process {self.pid}" + (f" ({told})" if told else "")
+        known = ", ".join(part for part in (self.command, self.since and f"since {self.since}") if part)
+        return f"process {self.pid}" + (f" ({known})" if known else "")
 
     @classmethod
     def present(cls) -> Holder:
-        """This process, from now on."""
+        """This process, since now."""
         program = sys.argv[0] if sys.argv else ""
         folder, name = os.path.split(program)
         words = [os.path.split(folder)[1] if name == "__main__.py" else name, *sys.argv[1:]]
@@ -107,7 +106,7 @@ class Holder(Value):
 
     @classmethod
     def parse(cls, text: str) -> Holder | None:
-        """Read a lock file's lines: process id, time, command; None if it names nobody."""
+        """Parse a lock file: lines with process id, time and command; None if it has no process."""
         lines = [*text.split("\n"), "", ""]
         try:
             return cls(int(lines[0]), lines[1], lines[2])
@@ -115,18 +114,18 @@ class Holder(Value):
             return None
 
     def to_text(self) -> str:
-        """The lock file's lines."""
+        """The lines of the lock file."""
         return f"{self.pid}\n{self.since}\n{self.command}\n"
 
 
 class PortLock:
-    """The right of this process to use one port or gateway.
+    """The lock of one port or gateway.
 
     Args:
-        resource: what is locked, the same for everyone who means it: a device's real path, ``ip:port``.
-        wait_s: how long to wait for another process.
-        waiting: is told, at once, whom it waits for.
-        clock: seconds; for tests.
+        resource: what is locked, by one name for all: the real path of a device, or ``ip:port``.
+        wait_s: how long to wait for another process, in seconds.
+        waiting: gets a message, at once, with the process that has the lock.
+        clock: in seconds; for tests.
         sleep: waits so many seconds; for tests.
     """
 
@@ -146,19 +145,19 @@ class PortLock:
         self._sleep = sleep
         self._queue: PortLock | None = None
         readable = re.sub(r"[^A-Za-z0-9.]+", "-", resource)[-60:].strip("-")
-        told_apart = crc32(resource.encode(errors="surrogateescape"))  # a-b, a/b; two alike would only wait
-        self.path: str | Path = f"{lock_folder()}/fatektool-{readable}-{told_apart:08x}.lock"
+        unique = crc32(resource.encode(errors="surrogateescape"))  # a-b, a/b; two alike would only wait
+        self.path: str | Path = f"{lock_folder()}/fatektool-{readable}-{unique:08x}.lock"
         self._descriptor: int | None = None
         self.found_doubt = False
-        """True, once taken, if the holder before may have left an answer on its way."""
+        """True, once locked, if an answer to the process before may still be received."""
         self.leaves_doubt: Callable[[], bool] = bool
-        """Set by the holder: the same of itself, asked when the lock is given back."""
+        """Set by the holder: the same of itself, called when the lock is released."""
 
     def acquire(self) -> None:
-        """Take the lock, waiting if need be.
+        """Lock, and wait if necessary.
 
         Raises:
-            PortBusy: another process (or another part of this one) has it and keeps it.
+            PortBusy: another process, or another part of this one, has it for longer than ``wait_s``.
         """
         if self._try():
             return
@@ -169,7 +168,7 @@ class PortLock:
         queue = self._waiting_line()
         try:
             while not self._try():
-                if not self._clock() < deadline:  # NaN is no time to wait
+                if not self._clock() < deadline:  # also for NaN
                     raise self._busy()
                 with contextlib.suppress(UsageError):
                     queue._try()  # noqa: SLF001  # its own kind; one in the queue is enough
@@ -178,7 +177,7 @@ class PortLock:
             queue.release()
 
     def wanted(self) -> bool:
-        """True if somebody waits for this lock."""
+        """True if a process waits for this lock."""
         queue = self._waiting_line()
         if not os.path.exists(queue.path):  # noqa: PTH110  # pathlib is loaded later
             return False
@@ -194,7 +193,7 @@ class PortLock:
         return self._queue
 
     def release(self) -> None:
-        """Give the lock back; again is fine."""
+        """Release the lock; may be called again."""
         if self._descriptor is not None:
             if not self.leaves_doubt():
                 with contextlib.suppress(OSError):
@@ -216,7 +215,7 @@ class PortLock:
             raise UsageError(f"cannot lock {self.path}: {error.strerror}") from error
         self._descriptor = descriptor
         _held.add(str(self.path))
-        with contextlib.suppress(OSError):  # another user's file is locked without being written
+        with contextlib.suppress(OSError):  # the file of another user is locked, but not written
             left = os.read(descriptor, 1)
             os.lseek(descriptor, 0, os.SEEK_SET)
             os.ftruncate(descriptor, 0)
@@ -236,14 +235,14 @@ class PortLock:
                 return os.open(self.path, flags & ~os.O_RDWR)
         except OSError as error:
             raise UsageError(
-                f"cannot make the lock file {self.path}: {error.strerror}",
-                hint="name another folder in FATEKTOOL_LOCK_DIR",
+                f"cannot create the lock file {self.path}: {error.strerror}",
+                hint="set FATEKTOOL_LOCK_DIR to another folder",
             ) from error
 
     def _make(self, flags: int) -> None:
-        """Make the file under another name first, so that it is for all users as soon as it has its own.
+        """Create the file under another name first, so that all users can lock it as soon as it is there.
 
-        The umask would keep other users out, and this process may be killed before it has set that right.
+        The umask would exclude other users, and this process may be killed before it has corrected that.
         """
         from pathlib import Path
 
@@ -253,7 +252,7 @@ class PortLock:
             with contextlib.suppress(OSError, AttributeError):
                 os.fchmod(descriptor, 0o666)
             os.close(descriptor)
-            with contextlib.suppress(FileExistsError):  # somebody else was faster
+            with contextlib.suppress(FileExistsError):  # another process was faster
                 os.link(new, self.path)
         except OSError:  # a file system without hard links
             with contextlib.suppress(FileExistsError):
@@ -262,7 +261,7 @@ class PortLock:
             new.unlink(missing_ok=True)
 
     def holder(self) -> Holder | None:
-        """Who holds the lock, as far as its file tells."""
+        """The process that holds the lock, as written in its file."""
         try:
             with open(self.path, "rb") as file:  # noqa: PTH123  # pathlib is loaded later
                 return Holder.parse(file.read(_MOST_TEXT).decode(errors="replace"))
@@ -274,7 +273,7 @@ class PortLock:
         stop = f" or stop process {found.pid}" if found else ""
         return PortBusy(
             f"{self.resource} is in use by {found or 'another process'}: waited {self._wait_s:g} s",
-            hint=f"let it end{stop}, or wait longer with --lock-wait",
+            hint=f"wait until it has ended{stop}, or wait longer with --lock-wait",
             holder=found and found.pid,
             command=found and found.command,
             since=found and found.since,

@@ -1,8 +1,8 @@
-"""A line within the process, on a clock of its own: no byte waits for real time.
+"""A line within this process, with a clock of its own: nothing waits for real time.
 
-The other side is anything with ``receive``: it takes bytes and the time, and gives what will come back, each
-piece with its due time. The simulator's line is one. Waiting is moving the clock, so that time-outs, slow
-answers and paced lines are exact and cost nothing.
+The other end is any object with ``receive``, such as a simulated line: it gets bytes and the time, and
+returns the answer in pieces, each with the time at which it arrives. Waiting sets the clock forward, so
+time-outs, slow answers and the speed of a line are exact and take no real time.
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ from fatektool.transport.base import Transport
 
 
 class Peer(Protocol):
-    """The other side of a line."""
+    """The other end of a line."""
 
     def receive(self, data: bytes, now: float) -> list[tuple[float, bytes]]:
-        """Take bytes at this time; give what comes back, each piece with its due time, in order."""
+        """Get bytes at this time; return the answer in pieces, each with its time, in order."""
 
 
 class MemoryTransport(Transport):
     """A line to a peer in this process.
 
     Args:
-        peer: the other side.
+        peer: the other end.
         name: the target, for messages.
     """
 
@@ -38,12 +38,12 @@ class MemoryTransport(Transport):
         self.clock = lambda: self._now
 
     def read(self, max_bytes: int, timeout_s: float) -> bytes:
-        """Give the next piece if it is due in time, else move the clock by the time-out."""
+        """Return the next piece if it arrives in time; else set the clock forward by the time-out."""
         if self._closed:
             raise TransportClosed(f"{self.name}: closed")
         if not self._coming or self._coming[0][0] > self._now + timeout_s:
             self._now += max(0.0, timeout_s)
-            raise TransportTimeout(f"{self.name}: nothing came within {timeout_s:.3f} s")
+            raise TransportTimeout(f"{self.name}: nothing received within {timeout_s:.3f} s")
         due, data = self._coming.popleft()
         self._now = max(self._now, due)
         if len(data) > max_bytes:
@@ -51,13 +51,13 @@ class MemoryTransport(Transport):
         return data[:max_bytes]
 
     def write(self, data: bytes) -> None:
-        """Hand bytes to the peer."""
+        """Give bytes to the peer."""
         if self._closed:
             raise TransportClosed(f"{self.name}: closed")
         self._coming.extend(self._peer.receive(data, self._now))
 
     def drain(self) -> bytes:
-        """Take the pieces that are due by now."""
+        """Return the pieces that have arrived by now."""
         taken = bytearray()
         while not self._closed and self._coming and self._coming[0][0] <= self._now:
             taken += self._coming.popleft()[1]

@@ -1,6 +1,6 @@
 """From a target to an open transport, locked for this process.
 
-Each medium's file is loaded only when its kind of target is named.
+The module of a medium is loaded only when a target needs it.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ ONE_TRY: Final = Patience()
 
 def open_transport(
     target: Target,
-    line: LineSettings,
+    settings: LineSettings,
     stack: ExitStack,
     *,
     lock_wait_s: float = 10.0,
@@ -34,29 +34,29 @@ def open_transport(
     on_lock: Callable[[PortLock], object] = lambda _lock: None,
     patience: Patience = ONE_TRY,
 ) -> Transport:
-    """Lock a serial port, TCP or UDP target and open it; a modem calls and is connected.
+    """Lock a serial port, TCP or UDP target and open it; with a modem, call and wait for the connection.
 
     Args:
-        target: where; anything but a simulated PLC.
-        line: speed and format of a serial port; of a modem's, to the modem.
-        stack: closes the transport and gives the lock back when it ends.
-        lock_wait_s: how long to wait for another process.
-        low_latency: ask the driver of a serial port to hand on at once what it receives, on Linux.
-        note: is told what a curious user may want to know.
-        waiting: is told whom this process waits for.
-        on_lock: is given the lock.
-        patience: how often a connection that is refused or closed is tried.
+        target: any but a simulated PLC.
+        settings: speed and format of a serial port; with a modem, between computer and modem.
+        stack: closes the transport and releases the lock when it ends.
+        lock_wait_s: how long to wait for another process, in seconds.
+        low_latency: on Linux, ask the driver of a serial port to pass on received bytes at once.
+        note: gets details, for ``-v``.
+        waiting: gets a message with the process that has the lock, if it must be waited for.
+        on_lock: gets the lock.
+        patience: retries of a connection that is refused or closed.
 
     Raises:
-        LineError: it cannot be opened, or the call finds nobody; PortBusy among them.
-        UsageError: a target that is no medium.
+        LineError: it cannot be opened, or the call is not answered; ``PortBusy`` among them.
+        UsageError: a target that is not a medium.
     """
     if target.on_serial_port:
         from fatektool.transport.serial_line.port import open_serial
 
-        on_lock(_lock(_serial_line(target.path), lock_wait_s, stack, waiting))
+        on_lock(_lock(_serial_line_name(target.path), lock_wait_s, stack, waiting))
         port = stack.enter_context(
-            patience.opened(lambda: open_serial(target.path, line, low_latency=low_latency, note=note))
+            patience.opened(lambda: open_serial(target.path, settings, low_latency=low_latency, note=note))
         )
         if target.call is None:
             return port
@@ -77,16 +77,16 @@ def open_transport(
         from fatektool.transport.udp import UdpTransport
 
         return stack.enter_context(UdpTransport(target.text, address))
-    raise UsageError(f"target {target.text!r} is no line that can be opened here")
+    raise UsageError(f"target {target.text!r} cannot be opened as a line")
 
 
-def _serial_line(path: str) -> str:
-    """The line of a serial target: a gateway's address where a URL leads to one, else its device or URL."""
-    from fatektool.transport.serial_line.url import host_of, line_of
+def _serial_line_name(path: str) -> str:
+    """The name of a serial target's line: the address of its gateway, else its device or URL."""
+    from fatektool.transport.serial_line.url import host_of, line_name
 
     gateway = host_of(path)
     if gateway is None:
-        return line_of(path)
+        return line_name(path)
     from fatektool.transport.sockets import resolve
 
     address = resolve(*gateway)

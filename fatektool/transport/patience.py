@@ -1,12 +1,12 @@
-"""Trying again where the connection itself fails: refused, reset, or closed by the other side.
+"""Retries of a connection that fails: refused, reset, or closed by the other side.
 
-A gateway that serves one connection may free it only some time after it was closed, and refuses the next one
-until then, or takes it and closes it ("Port already in use"). Tries without a pause are over in milliseconds.
-So before each try on a connection that failed there is a pause, longer each time::
+A gateway that serves one connection may need some time until it accepts the next one. Until then it refuses
+it, or accepts and closes it ("Port already in use"). Retries without a pause would fail within milliseconds.
+So there is a pause before each retry, longer each time::
 
     time-out 0.5 s     try  0.25 s  try  0.5 s  try  1 s  try     with 3 retries
 
-The number of tries is that of the exchange, ``--retries``; the pauses are in proportion to ``--timeout``.
+The number of retries is ``--retries``, as for a request; the pauses are in proportion to ``--timeout``.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING, Final, NamedTuple, TypeVar
 
 from fatektool.callbacks import ignore
 from fatektool.errors import TransportClosed
-from fatektool.transport.base import Transport
+from fatektool.transport.base import WrappedTransport
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fatektool.transport.base import LineSettings
+    from fatektool.transport.base import Transport
 
 T = TypeVar("T")
 
@@ -29,13 +29,13 @@ _LONGEST_PAUSE_S: Final = 5.0
 
 
 class Patience(NamedTuple):
-    """How often a connection is tried, and how long between.
+    """How often a connection is retried, and the pauses between.
 
     Attributes:
-        timeout_s: the PLC's time to answer.
-        retries: further tries.
+        timeout_s: the time for the PLC to answer, in seconds.
+        retries: retries after the first try.
         pause: waits so many seconds.
-        note: is told of each pause.
+        note: gets a message for each pause.
     """
 
     timeout_s: float = 0.5
@@ -44,23 +44,23 @@ class Patience(NamedTuple):
     note: Callable[[str], None] = ignore
 
     def pause_s(self, losses: int) -> float:
-        """How long to wait after so many failures in a row, from 1: half a time-out, one, two at most."""
+        """Seconds to wait after so many failures in a row, from 1: half a time-out, then one, then two."""
         return min(self.timeout_s * 2.0 ** min(losses - 2, 1), _LONGEST_PAUSE_S)
 
     def wait(self, error: TransportClosed, losses: int) -> None:
         """Wait before the next try."""
         seconds = self.pause_s(losses)
-        self.note(f"{error.message}; tried again in {seconds:g} s")
+        self.note(f"{error.message}; next try in {seconds:g} s")
         self.pause(seconds)
 
     def opened(self, make: Callable[[], T]) -> T:
-        """Make a connection, as often as it takes and is allowed.
+        """Make a connection, with retries.
 
         Args:
-            make: one try.
+            make: makes it, once.
 
         Raises:
-            LineError: as ``make`` does; ``TransportClosed`` when all tries were in vain.
+            LineError: as ``make`` does; ``TransportClosed`` when all tries failed.
         """
         for losses in range(1, self.retries + 1):
             try:
@@ -79,43 +79,40 @@ class Patience(NamedTuple):
             ) from error
 
 
-class PatientTransport(Transport):
-    """A medium that makes a lost connection anew at the next ``write``, after a pause.
+class PatientTransport(WrappedTransport):
+    """A medium that replaces a lost connection at the next ``write``, after a pause.
 
-    Failures in a row are those with no answer between them: a connection that says why it closes, and closes,
-    is one failure more.
+    Failures in a row are those with no successful request between them: a connection that is accepted, sends
+    a reason and is closed counts as another failure.
 
     Args:
         inner: the medium.
-        patience: how long the pauses are.
+        patience: the pauses.
     """
 
     def __init__(self, inner: Transport, patience: Patience) -> None:
-        self._inner = inner
+        super().__init__(inner)
         self._patience = patience
         self._losses = 0
         self._lost: TransportClosed | None = None
-        self.name = inner.name
-        self.line = inner.line
-        self.clock = inner.clock
 
     def read(self, max_bytes: int, timeout_s: float) -> bytes:
-        """Read what is there first."""
+        """Read what is received first."""
         try:
-            return self._inner.read(max_bytes, timeout_s)
+            return super().read(max_bytes, timeout_s)
         except TransportClosed as error:
             self._note_loss(error)
             raise
 
     def write(self, data: bytes) -> None:
-        """Write all of it; after a loss, wait first."""
+        """Write all of ``data``; after a loss, wait first."""
         if self._lost is None:
             self._losses = 0
         else:
             lost, self._lost = self._lost, None
             self._patience.wait(lost, self._losses)
         try:
-            self._inner.write(data)
+            super().write(data)
         except TransportClosed as error:
             self._note_loss(error)
             raise
@@ -124,24 +121,3 @@ class PatientTransport(Transport):
         if error.may_return and self._lost is None:
             self._lost = error
             self._losses += 1
-
-    def drain(self) -> bytes:
-        """Take what is there."""
-        return self._inner.drain()
-
-    def set_line(self, line: LineSettings) -> None:
-        """Take another speed and format."""
-        self._inner.set_line(line)
-        self.line = self._inner.line
-
-    def set_dtr(self, *, on: bool) -> bool:
-        """Switch DTR."""
-        return self._inner.set_dtr(on=on)
-
-    def renew(self) -> None:
-        """Start afresh."""
-        self._inner.renew()
-
-    def close(self) -> None:
-        """Close the medium."""
-        self._inner.close()

@@ -1,14 +1,14 @@
-"""A serial port behind a gateway that speaks RFC 2217: telnet, with the port's speed and format set over it.
+"""A serial port behind an RFC 2217 gateway: telnet, with speed and format of the port set through it.
 
-pyserial has the protocol. What its port does beside that, and what becomes of it here:
+pyserial implements the protocol. The differences of its port, and what this class changes:
 
-- It refuses a time-out for writing, which the socket below can have.
-- It waits for an answer to each order about DTR, RTS and flow control. A gateway whose port has no such wires
-  may never give one (ser2net over a pseudo terminal), and a PLC needs none of them. So opening sends these
-  orders and goes on; whoever sets DTR later, to hang a modem up, waits and is told.
-- Its reader thread dies with a traceback where the gateway is gone, and whoever waits for an answer waits all
-  the time there is. Here the end of the connection ends every wait.
-- What the gateway said before it closed ("Port already in use") is kept for the message.
+- It has no write time-out. This class sets one on the socket.
+- It waits for an answer to each command for DTR, RTS and flow control. A gateway whose port has no such lines
+  may never answer (ser2net with a pseudo terminal), and a PLC needs none of them. So opening sends these
+  commands without waiting; setting DTR later, to hang up a modem, waits for the answer.
+- Its reader thread ends with a traceback if the connection is lost, and a read then waits for its whole
+  time-out. Here the end of the connection ends every wait.
+- Text that the gateway sends before it closes ("Port already in use") is kept for the message.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ _LEAST_RECEIVE_S: Final = 0.05
 
 
 class Rfc2217Port(Serial):
-    """pyserial's port, that tells when the gateway is gone.
+    """pyserial's port, which also detects a lost connection.
 
     Args:
         url: ``rfc2217://HOST:PORT``.
-        write_timeout_s: how long the gateway may take no bytes.
-        settings: speed, format and time-out for reading, as pyserial names them.
+        write_timeout_s: how long a write may block, in seconds.
+        settings: speed, format and read time-out, by pyserial's names.
     """
 
     _socket: Any
@@ -48,29 +48,29 @@ class Rfc2217Port(Serial):
         self.port = url
 
     def open(self) -> None:
-        """Connect, agree on RFC 2217, set speed and format.
+        """Connect, negotiate RFC 2217, set speed and format.
 
         Raises:
-            SerialException, ValueError, OSError: ``lost`` and ``said`` tell more of it.
+            SerialException, ValueError, OSError: see also ``lost`` and ``said``.
         """
         super().open()
         self._opened = True
         self._socket.settimeout(self._write_timeout_s)
 
     def close(self) -> None:
-        """Close the connection, also one that is broken already: pyserial leaves that open."""
+        """Close the connection, also a broken one, which pyserial leaves open."""
         connection = self._socket
         super().close()
         if connection is not None:
             connection.close()
 
     def read(self, size: int = 1) -> bytes:
-        """Read; of a connection that is gone, first what came before."""
+        """Read; after the end of the connection, first what was received before."""
         rest = self._unread() if self.lost and self.is_open else b""
         return rest or super().read(size)
 
     def write(self, data: Any, /) -> int | None:
-        """Send all of it."""
+        """Send all of ``data``."""
         try:
             return super().write(data)
         except serial.SerialException as error:
@@ -79,14 +79,14 @@ class Rfc2217Port(Serial):
             raise
 
     def rfc2217_set_control(self, value: bytes) -> None:
-        """Set a control wire; while the port is opened, without waiting for the answer."""
+        """Set a control line; while the port is being opened, without waiting for the answer."""
         if self._opened:
             super().rfc2217_set_control(value)
         else:
             self._rfc2217_options["control"].set(value)
 
     def _telnet_read_loop(self) -> None:
-        with contextlib.suppress(OSError):  # the gateway went while this thread was to answer it
+        with contextlib.suppress(OSError):  # the connection ended while this thread answered
             super()._telnet_read_loop()  # type: ignore[misc]
         if not self._opened:
             self.said = said_text(self._unread())
@@ -99,7 +99,7 @@ class Rfc2217Port(Serial):
             order.state = REALLY_INACTIVE
 
     def _unread(self) -> bytes:
-        """Take what came and was not read."""
+        """Return what was received and not read."""
         data = bytearray()
         with contextlib.suppress(Empty):
             while True:

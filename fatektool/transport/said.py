@@ -1,4 +1,4 @@
-"""What a gateway says in plain text before it closes: "Port already in use" and the like."""
+"""The reason that some gateways send as text before they close: "Port already in use" and the like."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ _LEAST_SAID: Final = 4
 
 
 def said_text(data: bytes) -> str:
-    """The first line of a short plain text; empty if the bytes are none, as no frame of a PLC is.
+    """The first line of a short text; empty if the bytes are not text. No frame of a PLC is.
 
     Args:
-        data: all that came over a connection.
+        data: all bytes received over a connection.
     """
     text = data.decode("ascii", errors="replace").strip()
     first = text.splitlines()[0].strip() if text else ""

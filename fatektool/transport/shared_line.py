@@ -1,7 +1,7 @@
-"""One open line for PLCs that are asked one after the other: a connection a gateway, not one a PLC.
+"""One open line for several PLCs, one after the other: one connection for each gateway, not for each PLC.
 
-It is kept from one PLC to the next as long as all is in order and nobody else waits for it. After any trouble
-it is closed, and the next PLC opens it anew; so no answer that is still on its way is taken for another's.
+It stays open from one PLC to the next, unless there was an error or another process waits for it. After an
+error it is closed, and the next PLC opens it again, so that a late answer is not received for another PLC.
 """
 
 from __future__ import annotations
@@ -25,27 +25,28 @@ class SharedLine:
     """A line that stays open between two PLCs on it.
 
     Attributes:
-        locks: of the open line; empty for none.
+        locks: those of the open line; empty if none is open.
     """
 
     def __init__(self) -> None:
         self.locks: list[PortLock] = []
         self._target = ""
-        self._line: LineSettings | None = None
+        self._settings: LineSettings | None = None
         self._transport: Transport | None = None
         self._lent: list[LentTransport] = []
         self._stack = ExitStack()
 
-    def take(self, target: str, line: LineSettings, opened: Opener) -> Transport:
-        """The line to a target: the one that is open, if it is the same, else another.
+    def take(self, target: str, settings: LineSettings, opened: Opener) -> Transport:
+        """The line to a target: the open one, if it has this target, else a new one.
 
         Args:
-            target: as the user named it.
-            line: speed and format, which may be others than before.
-            opened: opens the line, on a stack that closes it, and gives its lock and the line to lend.
+            target: as the user wrote it.
+            settings: speed and format, which may differ from those before.
+            opened: opens the line on a stack that closes it; the callbacks get its lock and the line itself,
+                if it can be released between two rounds.
 
         Raises:
-            LineError: it cannot be opened, or does not take this speed and format.
+            LineError: it cannot be opened, or does not have this speed and format.
         """
         if self._transport is None or self._target != target:
             self.close()
@@ -53,15 +54,15 @@ class SharedLine:
                 self._transport = opened(stack, self.locks.append, self._lent.append)
                 self._stack = stack.pop_all()
         else:
-            for lock in self.locks:  # who had it before left nothing on its way, or it would be closed
+            for lock in self.locks:  # no answer is late on it, or it would have been closed
                 lock.found_doubt = False
-            if line != self._line:
-                self._transport.set_line(line)
-        self._target, self._line = target, line
+            if settings != self._settings:
+                self._transport.configure(settings)
+        self._target, self._settings = target, settings
         return self._transport
 
     def between(self) -> None:
-        """Nobody of this process needs it now: who waits for it may have it."""
+        """Between two PLCs: release the line if another process waits for it."""
         if any(lock.wanted() for lock in self.locks):
             for lent in self._lent:
                 lent.lend(0)

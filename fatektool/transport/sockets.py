@@ -1,7 +1,7 @@
-"""What TCP and UDP share: a connected socket, its errors in the project's words.
+"""What TCP and UDP share: a connected socket, and its errors as the project's own.
 
-A connection that broke is made anew at the next ``write``: mixed Ethernet modules stop answering now and
-then, and a reconnect mends it [E:ethernet-reconnect].
+After a connection is lost, the next ``write`` makes a new one: Ethernet modules sometimes stop answering
+until a reconnect [E:ethernet-reconnect].
 """
 
 from __future__ import annotations
@@ -21,20 +21,20 @@ if TYPE_CHECKING:
 
 _TIMEOUT_STEP_S: Final = 0.005
 _LONGEST_WAIT_S: Final = 86400.0
-"""Waiting less than asked is fine, and no system counts the milliseconds of a month."""
+"""A wait may be shorter than asked, and no system counts the milliseconds of a month."""
 
 Address = tuple[str, int] | tuple[str, int, int, int]
-"""IP address and port; of IPv6 also flow and scope, which a link-local address needs."""
+"""IP address and port; for IPv6 also flow and scope, which a link-local address needs."""
 
 
 def resolve(host: str, port: int) -> Address:
-    """The IP address of a host, with the port; IPv4 first, which is what these PLCs' modules speak.
+    """The IP address of a host, with the port; IPv4 first, because the modules of these PLCs have IPv4 only.
 
     Raises:
-        LineError: the name has none.
+        LineError: the name has no address.
     """
     try:
-        # As text it would load IDNA, which only other letters than ASCII's need.
+        # Text would load IDNA, which only names outside ASCII need.
         found = socket.getaddrinfo(host.encode() if host.isascii() else host, port, type=socket.SOCK_STREAM)
     except (OSError, ValueError) as error:  # UnicodeError among them
         reason = getattr(error, "strerror", None) or str(error)
@@ -46,7 +46,7 @@ def resolve(host: str, port: int) -> Address:
 
 
 def connected_to(address: Address, kind: socket.SocketKind, timeout_s: float) -> socket.socket:
-    """A socket connected to an address; what goes wrong is raised as the system has it."""
+    """A socket connected to an address; raises the errors of the operating system."""
     connecting = socket.socket(socket.AF_INET6 if ":" in address[0] else socket.AF_INET, kind)
     try:
         connecting.settimeout(timeout_s)
@@ -60,7 +60,7 @@ def connected_to(address: Address, kind: socket.SocketKind, timeout_s: float) ->
 
 
 class SocketTransport(Transport):
-    """A connected socket; how it connects and receives is the subclass's.
+    """A connected socket; connecting and receiving are the subclass's.
 
     Args:
         name: the target, for messages.
@@ -91,22 +91,22 @@ class SocketTransport(Transport):
         self._writable = writable(connected.fileno())
         return connected
 
-    def _last_words(self) -> str:
-        """What the other side said of the end, as part of a sentence; empty for nothing."""
+    def _sent_reason(self) -> str:
+        """The reason that the other side sent as text, as part of a sentence; empty if none."""
         return ""
 
     def _broken(self, error: OSError) -> TransportClosed:
-        words = self._last_words()
+        reason = self._sent_reason()
         self.close()
         return TransportClosed(
-            f"{self.name}: the connection broke: {error.strerror or error}{words}",
-            hint="is the PLC's Ethernet module or the gateway on, and the cable in? Other programs may hold "
-            "all the connections that it has (a FATEK module has 8, many gateways 1)",
+            f"{self.name}: the connection was lost: {error.strerror or error}{reason}",
+            hint="check that the PLC's Ethernet module or the gateway is on, and its cable. Other programs "
+            "may use all of its connections (a FATEK module has 8, many gateways 1)",
             may_return=isinstance(error, ConnectionError),
         )
 
     def read(self, max_bytes: int, timeout_s: float) -> bytes:
-        """Read what is there first, at most ``max_bytes``."""
+        """Read what is received first, at most ``max_bytes``."""
         connected = self._socket
         if connected is None:
             raise TransportClosed(f"{self.name}: the connection is closed")
@@ -115,15 +115,15 @@ class SocketTransport(Transport):
                 self._set_timeout(connected, timeout_s)
             data = self._receive(connected, max_bytes)
         except (TimeoutError, BlockingIOError):
-            raise TransportTimeout(f"{self.name}: nothing came within {timeout_s:.3f} s") from None
+            raise TransportTimeout(f"{self.name}: nothing received within {timeout_s:.3f} s") from None
         except OSError as error:
             raise self._broken(error) from error
         if not data:  # a datagram with a wrong checksum, or an empty one
-            raise TransportTimeout(f"{self.name}: nothing came")
+            raise TransportTimeout(f"{self.name}: nothing received")
         return data
 
     def _set_timeout(self, connected: socket.socket, timeout_s: float) -> None:
-        """Rounded, so that it changes but seldom: each change is a system call."""
+        """Rounded, so that it seldom changes: each change is a system call."""
         wait_s = max(0.0, ceil(min(timeout_s, _LONGEST_WAIT_S) / _TIMEOUT_STEP_S) * _TIMEOUT_STEP_S)
         if wait_s != self._timeout_s:
             connected.settimeout(wait_s)
@@ -142,15 +142,15 @@ class SocketTransport(Transport):
                     if not self._writable(WRITE_TIMEOUT_S):
                         self.close()
                         raise TransportTimeout(
-                            f"{self.name}: takes no bytes for {WRITE_TIMEOUT_S} s"
+                            f"{self.name}: the write blocked for {WRITE_TIMEOUT_S:g} s"
                         ) from None
         except OSError as error:
             raise self._broken(error) from error
 
     def drain(self) -> bytes:
-        """Take what was received already."""
+        """Return what was received already."""
         connected = self._socket
-        if connected is None or not self._readable(0.0):  # there is nothing, as good as always
+        if connected is None or not self._readable(0.0):  # the usual case
             return b""
         taken = bytearray()
         with contextlib.suppress(OSError, TransportClosed):
@@ -159,7 +159,7 @@ class SocketTransport(Transport):
         return bytes(taken)
 
     def renew(self) -> None:
-        """Drop the connection; the next ``write`` makes another."""
+        """Close the connection; the next ``write`` makes a new one."""
         self.close()
 
     def close(self) -> None:

@@ -1,12 +1,12 @@
-"""What ``--port`` names: ``/dev/ttyUSB0``, ``COM3``, ``tcp://host:500``, ``sim:FILE``, ``modem:…``, a URL.
+"""Targets of ``--port``: ``/dev/ttyUSB0``, ``COM3``, ``tcp://host:500``, ``sim:FILE``, ``modem:…``, a URL.
 
 ::
 
     scheme       kind     opened by
     (none)       serial   pyserial, a device
-    tcp, udp     net      this project, port 500 unless named (FACON's; other protocols may have none)
-    sim          sim      the simulator, within the process
-    modem        modem    a serial port, called through: modem:/dev/ttyUSB0?number=0228082192
+    tcp, udp     net      this project; default port 500 (of FACON; other protocols may have none)
+    sim          sim      the simulator, in this process
+    modem        modem    a serial port with a modem that calls: modem:/dev/ttyUSB0?number=0228082192
     others       serial   pyserial, by its URL handler: rfc2217, socket, hwgrep, spy, alt, loop
 """
 
@@ -29,7 +29,7 @@ DEFAULT_PORT: Final = 500
 
 
 class TargetKind(Enum):
-    """How a target is opened."""
+    """The way in which a target is opened."""
 
     SERIAL = "serial"
     TCP = "tcp"
@@ -39,15 +39,15 @@ class TargetKind(Enum):
 
 
 class Target(NamedTuple):
-    """One target, taken apart.
+    """A target, parsed.
 
     Attributes:
         text: as the user wrote it.
-        kind: how it is opened.
-        host: for TCP and UDP.
-        port: for TCP and UDP.
-        path: the device or URL of a serial port, the file of ``sim:FILE``; empty for ``sim:``.
-        call: whom a modem calls, and how.
+        kind: the way in which it is opened.
+        host: of TCP and UDP.
+        port: of TCP and UDP.
+        path: the device or URL of a serial port, or the file of ``sim:FILE``; empty for ``sim:``.
+        call: the number that a modem calls, and its options.
     """
 
     text: str
@@ -59,14 +59,14 @@ class Target(NamedTuple):
 
     @classmethod
     def parse(cls, text: str, *, default_port: int | None = DEFAULT_PORT) -> Target:
-        """Read a target.
+        """Parse a target.
 
         Args:
             text: as the user wrote it.
-            default_port: of TCP and UDP, if none is named; None if it must be.
+            default_port: for TCP and UDP without a port; None if the port is required.
 
         Raises:
-            UsageError: it is none.
+            UsageError: it is not a target.
         """
         if not text.strip() or "\0" in text:
             raise UsageError("the target is empty", hint=_WAYS)
@@ -101,8 +101,8 @@ class Target(NamedTuple):
         port = int(match[4]) if match[4] else default_port
         if port is None:
             raise UsageError(
-                f"target {text!r}: expected a port, as this protocol has no usual one",
-                hint=f"name it: {text.rstrip('/')}:PORT",
+                f"target {text!r}: expected a port, because this protocol has no default port",
+                hint=f"add it: {text.rstrip('/')}:PORT",
             )
         if not 1 <= port <= 65535:
             raise UsageError(f"target {text!r}: port: expected 1 to 65535, got {port}")
@@ -111,24 +111,24 @@ class Target(NamedTuple):
 
     @property
     def is_url(self) -> bool:
-        """True for a serial port that pyserial opens by URL."""
+        """True for a serial port that pyserial opens by its URL."""
         return self.on_serial_port and re.match(_SCHEME, self.path) is not None
 
     @property
     def on_serial_port(self) -> bool:
-        """True if bytes go through a serial port of this computer, or what pyserial takes for one."""
+        """True for a serial port of this computer or a URL of pyserial, with or without a modem."""
         return self.kind in {TargetKind.SERIAL, TargetKind.MODEM}
 
 
 def _require_place(path: str) -> None:
-    if "://" in path:  # pyserial's URLs are known where one is named
+    if "://" in path:  # loaded only if there is a URL
         from fatektool.transport.serial_line.url import require_place
 
         require_place(path)
 
 
 def _lower_scheme(text: str) -> str:
-    """``TCP://HOST`` is ``tcp://HOST``: a scheme is read in either case, as of any URL."""
+    """``TCP://HOST`` is ``tcp://HOST``: the scheme of a URL may be in capitals."""
     match = re.match(_SCHEME, text) or re.match(r"(?:sim|modem|tcp|udp):", text, re.IGNORECASE)
     return text if match is None else match[0].lower() + text[match.end() :]
 

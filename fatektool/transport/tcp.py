@@ -1,4 +1,4 @@
-"""TCP: to a PLC's Ethernet module or to a serial gateway. A stream may split or join frames anywhere."""
+"""TCP: to a PLC's Ethernet module or a serial gateway. A stream may split or join frames anywhere."""
 
 from __future__ import annotations
 
@@ -13,14 +13,12 @@ from fatektool.transport.sockets import SocketTransport, connected_to
 if TYPE_CHECKING:
     from fatektool.transport.sockets import Address
 
-_TAKEN: Final = (
-    "other programs may hold all the connections that it has (a FATEK module has 8, many gateways 1)"
-)
+_TAKEN: Final = "other programs may use all of its connections (a FATEK module has 8, many gateways 1)"
 _HINTS: Final = (
     "check address and port, and that the PLC's Ethernet module or the gateway is on",
     _TAKEN,
 )
-"""If it could not be connected to; if it took the connection and reset it."""
+"""If it did not accept the connection; if it accepted and reset it."""
 
 
 class TcpTransport(SocketTransport):
@@ -29,10 +27,10 @@ class TcpTransport(SocketTransport):
     Args:
         name: the target, for messages.
         address: IP address and port.
-        connect_timeout_s: how long a connection may take to be made.
+        connect_timeout_s: how long connecting may take, in seconds.
 
     Raises:
-        TransportClosed: nobody accepts it.
+        TransportClosed: the connection is not accepted.
     """
 
     def __init__(self, name: str, address: Address, *, connect_timeout_s: float = 5.0) -> None:
@@ -54,10 +52,10 @@ class TcpTransport(SocketTransport):
     def _receive(self, connected: socket.socket, max_bytes: int) -> bytes:
         data = connected.recv(max_bytes)
         if not data:
-            words = self._last_words()
+            reason = self._sent_reason()
             self.close()
             raise TransportClosed(
-                f"{self.name}: the other side closed the connection{words}",
+                f"{self.name}: the other side closed the connection{reason}",
                 hint=_TAKEN,
                 may_return=True,
             )
@@ -65,12 +63,12 @@ class TcpTransport(SocketTransport):
             self._first += data
         return data
 
-    def _last_words(self) -> str:
+    def _sent_reason(self) -> str:
         from fatektool.transport.said import said_text
 
-        if self._socket is not None:  # what came before a reset can still be read behind it
+        if self._socket is not None:  # bytes received before a reset can still be read
             with contextlib.suppress(OSError):
                 self._socket.settimeout(0)
                 self._first += self._socket.recv(MOST_SAID)
-        said = said_text(bytes(self._first))
-        return f", after it said {said!r}" if said else ""
+        text = said_text(bytes(self._first))
+        return f", after it sent {text!r}" if text else ""

@@ -1,17 +1,17 @@
-r"""A record of the wire: what went out and what came in, with the time of each.
+r"""Recording of all bytes sent and received, with their times.
 
 ``.ndjson``, one line a record::
 
     {"time": "2026-11-22T03:15:00.123456Z", "protocol": "facon", "direction": "tx", "hex": "0230313430433703"}
 
-``.pcap``, for Wireshark: link type 147 (user 0), nanosecond time stamps; before the bytes of each record
-stands a pseudo-header of four bytes::
+``.pcap``, for Wireshark: link type 147 (user 0), nanosecond time stamps; a pseudo-header of four bytes before
+the bytes of each record::
 
     version 01 · direction 00 sent, 01 received · protocol (``trace_code`` in ``protocols.py``) · 00
 
-Bytes that came in pieces make one record up to the next request or time-out, so that a frame is seldom split;
-of a line that babbles on, a record holds 32 KiB.
-A record is written when it is complete: a program that dies keeps all but the last.
+Bytes received in pieces are one record, up to the next request or time-out, so that a frame is seldom split;
+a record has at most 32 KiB. A record is written when it is complete: if the program is killed, only the last
+one is lost.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ from typing import TYPE_CHECKING, BinaryIO, Final, Protocol
 
 from fatektool.errors import TransportError, UsageError
 from fatektool.protocols import PROTOCOLS
-from fatektool.transport.base import Transport
+from fatektool.transport.base import WrappedTransport
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from fatektool.transport.base import LineSettings
+    from fatektool.transport.base import LineSettings, Transport
 
 LINK_TYPE: Final = 147
 PCAP_MAGIC: Final = 0xA1B23C4D  # nanoseconds, in the writer's byte order
@@ -49,7 +49,7 @@ class TraceWriter(Protocol):
         """Write one record."""
 
     def close(self) -> None:
-        """Close the file; again is fine."""
+        """Close the file; may be called again."""
 
 
 class NdjsonTrace:
@@ -97,10 +97,10 @@ class PcapTrace:
 
 
 def open_trace(path: Path, protocol: str) -> TraceWriter:
-    """Begin a trace file, ``.pcap`` or ``.ndjson`` by its name.
+    """Create a trace file, ``.pcap`` or ``.ndjson`` by its name.
 
     Raises:
-        UsageError: another ending, or a file that cannot be written.
+        UsageError: another suffix, or the file cannot be written.
     """
     suffix = path.suffix.lower()
     if suffix not in {".pcap", ".ndjson"}:
@@ -114,7 +114,7 @@ def open_trace(path: Path, protocol: str) -> TraceWriter:
 
 
 def _private(path: str, flags: int) -> int:
-    """A program may be read in a trace: it is for its owner and the group, as backups are."""
+    """A trace may contain a program: only owner and group can read it, as a backup."""
     return os.open(path, flags, 0o640)
 
 
@@ -124,31 +124,28 @@ def time_text(time_ns: int) -> str:
     return time.strftime("%Y-%m-%dT%H:%M:%S", time.gmtime(seconds)) + f".{nanoseconds // 1000:06d}Z"
 
 
-class TracedTransport(Transport):
-    """A transport whose traffic is recorded.
+class TracedTransport(WrappedTransport):
+    """A transport whose bytes are recorded.
 
     Args:
         inner: the medium.
-        writer: where to.
+        writer: gets the records.
         time_ns: the time of day; for tests.
     """
 
     def __init__(
         self, inner: Transport, writer: TraceWriter, *, time_ns: Callable[[], int] = time.time_ns
     ) -> None:
-        self._inner = inner
+        super().__init__(inner)
         self._writer = writer
         self._time_ns = time_ns
         self._received = bytearray()
         self._received_at = 0
-        self.name = inner.name
-        self.line = inner.line
-        self.clock = inner.clock
 
     def read(self, max_bytes: int, timeout_s: float) -> bytes:
-        """Read, and keep what came for its record."""
+        """Read, and keep the bytes for their record."""
         try:
-            data = self._inner.read(max_bytes, timeout_s)
+            data = super().read(max_bytes, timeout_s)
         except TransportError:
             self._flush()
             raise
@@ -156,34 +153,29 @@ class TracedTransport(Transport):
         return data
 
     def write(self, data: bytes) -> None:
-        """Record what came before, then what goes out."""
+        """Record what was received before, then ``data``, and write it."""
         self._flush()
         self._record(self._time_ns(), SENT, data)
-        self._inner.write(data)
+        super().write(data)
 
     def drain(self) -> bytes:
-        """Take what is there, and keep it for its record."""
-        data = self._inner.drain()
+        """Drain, and keep the bytes for their record."""
+        data = super().drain()
         if data:
             self._keep(data)
         return data
 
-    def set_line(self, line: LineSettings) -> None:
-        """Take another speed and format."""
+    def configure(self, settings: LineSettings) -> None:
+        """Set speed and format; the bytes before are a record of their own."""
         self._flush()
-        self._inner.set_line(line)
-        self.line = self._inner.line
-
-    def renew(self) -> None:
-        """Start afresh."""
-        self._inner.renew()
+        super().configure(settings)
 
     def close(self) -> None:
-        """Write the last record and close both, whatever becomes of the record."""
+        """Write the last record and close both, even if the record cannot be written."""
         try:
             self._flush()
         finally:
-            self._inner.close()
+            super().close()
             with _writing():
                 self._writer.close()
 

@@ -1,4 +1,4 @@
-"""Reading what ``trace`` wrote, ``.ndjson`` or ``.pcap``, whoever damaged it since."""
+"""Reading of traces, ``.ndjson`` or ``.pcap``, damaged ones too."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class TraceRecord:
         time: UTC, RFC 3339.
         direction: ``tx`` sent, ``rx`` received.
         data: the bytes.
-        protocol: the name of ``--protocol``; empty if the trace does not tell.
+        protocol: the name of ``--protocol``; empty if the trace does not have it.
     """
 
     time: str
@@ -58,7 +58,7 @@ def read_trace(data: bytes, name: str) -> Iterator[TraceRecord]:
         name: the file's name, for messages.
 
     Raises:
-        DataError: no trace, or a damaged one; the records before the damage are given first.
+        DataError: no trace, or a damaged one; the records before the damage are returned first.
     """
     if data[:4] in {struct.pack("<I", PCAP_MAGIC), struct.pack(">I", PCAP_MAGIC)}:
         return _read_pcap(data, name)
@@ -78,8 +78,8 @@ def _read_ndjson(data: bytes, name: str) -> Iterator[TraceRecord]:
                 str(entry.get("protocol", "")),
             )
         except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-            said = f": {error}" if isinstance(error, EncodingError) else ""
-            raise DataError(f"{name}: line {number}: no trace record{said}", hint=_HINT) from error
+            reason = f": {error}" if isinstance(error, EncodingError) else ""
+            raise DataError(f"{name}: line {number}: not a trace record{reason}", hint=_HINT) from error
         if record.direction not in {SENT, RECEIVED}:
             raise DataError(f"{name}: line {number}: expected direction tx or rx", hint=_HINT)
         if not _is_time(record.time):
@@ -97,7 +97,7 @@ def _is_time(text: str) -> bool:
 def _read_pcap(data: bytes, name: str) -> Iterator[TraceRecord]:
     order = "<" if data[:4] == struct.pack("<I", PCAP_MAGIC) else ">"
     if len(data) < _GLOBAL or struct.unpack_from(order + "I", data, 20)[0] != LINK_TYPE:
-        raise DataError(f"{name}: no trace of this program: expected link type {LINK_TYPE}")
+        raise DataError(f"{name}: not a trace of this program: expected link type {LINK_TYPE}")
     at = _GLOBAL
     number = 0
     while at < len(data):

@@ -1,6 +1,6 @@
 """UDP: to a PLC's Ethernet module.
 
-A datagram may be lost, come twice or come late: the client's fences, not this file, see to that.
+A datagram may be lost, duplicated or late. The exchange detects that with fences, not this file.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ _DATAGRAM: Final = 65535
 
 
 class UdpTransport(SocketTransport):
-    """A UDP socket that hears only the address it talks to. A datagram is given whole."""
+    """A UDP socket that receives from its target only. A datagram is returned whole."""
 
     def _connect(self) -> socket.socket:
         try:
@@ -23,7 +23,7 @@ class UdpTransport(SocketTransport):
         except OSError as error:
             raise TransportClosed(
                 f"{self.name}: cannot send to {self._address[0]}: {error.strerror or error}",
-                hint="check the address and this computer's network",
+                hint="check the address and the network of this computer",
             ) from error
 
     def _receive(self, connected: socket.socket, max_bytes: int) -> bytes:

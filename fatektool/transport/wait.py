@@ -1,7 +1,7 @@
-"""Waiting for one file descriptor, with whatever this system has for it.
+"""Waiting for one file descriptor, with ``poll`` or ``select``.
 
-``poll`` where it exists, as ``select`` fails on descriptors past 1023; else ``select``, which on Windows
-takes sockets of any number.
+``poll`` where it exists, because ``select`` fails for descriptors above 1023; else ``select``, which on
+Windows has no such limit.
 """
 
 from __future__ import annotations
@@ -14,16 +14,16 @@ if TYPE_CHECKING:
 
 
 _LONGEST_S: Final = 86400.0
-"""Waiting less than asked is fine, and poll cannot count the milliseconds of a month."""
+"""A wait may be shorter than asked, and ``poll`` cannot count the milliseconds of a month."""
 
 
 def readable(descriptor: int) -> Callable[[float], bool]:
-    """A function that waits at most so many seconds until the descriptor has bytes, or its end."""
+    """A function that waits at most so many seconds until there is something to read, or the end."""
     return _waiter(descriptor, writing=False)
 
 
 def writable(descriptor: int) -> Callable[[float], bool]:
-    """A function that waits at most so many seconds until the descriptor takes bytes."""
+    """A function that waits at most so many seconds until bytes can be written."""
     return _waiter(descriptor, writing=True)
 
 

@@ -182,7 +182,7 @@ ERRORS = r"""
 3 doctor -p /dev/nope
     /dev/nope: no such port
 3 status -p /dev/nope
-    /dev/nope: no such port; 'fatektool ports'
+    /dev/nope: no such port; check that the adapter is plugged in; 'fatektool ports'
 3 status -p tcp://127.0.0.1:1
     cannot connect to 127.0.0.1 port 1
 3 status -p tcp://plc.invalid
@@ -222,7 +222,7 @@ ERRORS = r"""
 5 decode 0011223344
     expected bytes from STX .02. to ETX .03.
 5 decode old.json
-    line 1: no trace record
+    line 1: not a trace record
 5 status -p sim:old.json
     old.json:
 """

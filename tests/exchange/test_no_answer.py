@@ -140,7 +140,7 @@ def test_one_try() -> None:
 
 def test_the_line_is_named_where_there_is_one() -> None:
     transport = MemoryTransport(Script(), "/dev/ttyUSB0")
-    transport.line = "19200 8N1"
+    transport.serial_settings = "19200 8N1"
     link = Link(transport, FACON, 9, LineSettings(19200, "8N1"), timeout_s=1.25, retries=1)
     with pytest.raises(NoAnswer) as caught:
         link.ask(Loopback(b"A"))

@@ -153,7 +153,7 @@ def test_a_gateway_that_stays_busy_is_named(cli: Cli, says: bytes | None) -> Non
     assert done.code == 3
     assert "Traceback" not in done.err
     assert "ther programs may hold" in done.err
-    assert says is None or re.search("after it said 'Port already in use'|reset", done.err), done.err
+    assert says is None or re.search("after it sent 'Port already in use'|reset", done.err), done.err
 
 
 def test_a_plc_that_is_silent_does_not_keep_the_line_from_the_next(cli: Cli) -> None:
@@ -229,7 +229,7 @@ def test_ser2net_that_another_holds_is_waited_for(
             assert holder.recv(1)  # it has the port
             done = cli("status", "-p", gateway.target, "--timeout", "0.01", "--retries", "2")
             assert done.code == 3
-            assert re.search("after it said 'Port already in use'|reset", done.err), done.err
+            assert re.search("after it sent 'Port already in use'|reset", done.err), done.err
             assert "ther programs may hold" in done.err
             pauses: list[float] = []
 

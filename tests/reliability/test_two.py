@@ -218,7 +218,7 @@ def test_a_holder_that_stands_still_is_named(tmp_path: Path) -> None:
             at_once, at_last = done.err.splitlines()
             assert f"is in use by process {holder.pid} (fatektool watch R0 -p " in at_once
             assert at_once.endswith("Z): waiting, for 0.1 s at most")
-            assert "Z): waited 0.1 s; let it end or stop process" in at_last
+            assert "Z): waited 0.1 s; wait until it has ended or stop process" in at_last
             assert error["details"]["command"].startswith("fatektool watch R0 -p ")
             assert "--lock-wait" in error["hint"]
         finally:
@@ -332,7 +332,7 @@ def test_a_lock_file_of_another_user_that_may_not_even_be_read(shared: Path) -> 
     (file,) = shared.iterdir()
     file.chmod(0o600)
     said = tried(NOBODY)
-    assert said.startswith(f"UsageError cannot make the lock file {file}: Permission denied")
+    assert said.startswith(f"UsageError cannot create the lock file {file}: Permission denied")
     assert "FATEKTOOL_LOCK_DIR" in said
 
 

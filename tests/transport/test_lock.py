@@ -308,7 +308,7 @@ def test_a_folder_that_cannot_be_used_is_one_clear_line(
     (tmp_path / "file").touch()
     monkeypatch.setenv("FATEKTOOL_LOCK_DIR", str(tmp_path / place))
     lock = PortLock(RESOURCE, 0)
-    with pytest.raises(UsageError, match="cannot make the lock file") as caught:
+    with pytest.raises(UsageError, match="cannot create the lock file") as caught:
         lock.acquire()
     assert str(lock.path) in caught.value.message
     assert "FATEKTOOL_LOCK_DIR" in str(caught.value.hint)
@@ -335,7 +335,7 @@ def test_a_trap_in_a_shared_folder_is_not_stepped_into(trap: str, tmp_path: Path
         Path(lock.path).symlink_to(victim)
         if trap == "file":
             victim.write_text("precious")
-    with pytest.raises(UsageError, match="cannot make the lock file"):
+    with pytest.raises(UsageError, match="cannot create the lock file"):
         lock.acquire()
     assert not victim.exists() or victim.read_text() == "precious"
 

@@ -116,10 +116,10 @@ def test_a_refusal_is_told_and_no_more(port: str, capsys: pytest.CaptureFixture[
     transport = open_serial(port, LINE, note=notes.append)
     transport.write(b"\x02")
     transport.close()
-    assert [note for note in notes if note.startswith(f"{port}: the driver has no low latency mode: ")]
+    assert [note for note in notes if note.startswith(f"{port}: the driver has no low-latency mode: ")]
 
     assert run([*nobody_answers(port), "-v"]) == LineError.exit_code
-    assert "has no low latency mode" in capsys.readouterr().err
+    assert "has no low-latency mode" in capsys.readouterr().err
     assert run(nobody_answers(port)) == LineError.exit_code
     assert "low latency" not in capsys.readouterr().err
 

@@ -99,7 +99,7 @@ def test_no_right_to_the_port(tmp_path: Path) -> None:
     port = tmp_path / "ttyUSB0"
     port.touch(0o000)
     error = refusal(str(port))
-    assert error.message == f"{port}: no right to use the port"
+    assert error.message == f"{port}: no permission to use the port"
     assert "dialout" in str(error.hint)
 
 
@@ -141,7 +141,7 @@ def test_a_wrong_url_is_no_fault_of_the_line(target: str, words: str) -> None:
 
 
 def test_a_scheme_that_nobody_knows() -> None:
-    with ExitStack() as stack, pytest.raises(UsageError, match="no such kind of target") as caught:
+    with ExitStack() as stack, pytest.raises(UsageError, match="unknown kind of target") as caught:
         opened("tpc://192.168.2.3", stack)
     assert "tcp://" in str(caught.value.hint)
 

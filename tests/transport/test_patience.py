@@ -51,7 +51,7 @@ def test_a_refused_connection_is_tried_again(refusals: int) -> None:
     assert clock.patience().opened(gateway.connect) == "connected"
     assert clock.pauses == [0.25, 0.5, 1.0][:refusals]
     assert len(clock.notes) == refusals
-    assert all(note.startswith("tcp://gw: refused; tried again in") for note in clock.notes)
+    assert all(note.startswith("tcp://gw: refused; next try in") for note in clock.notes)
 
 
 def test_it_ends_with_the_retries() -> None:

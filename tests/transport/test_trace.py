@@ -154,7 +154,7 @@ def test_what_is_drained_is_recorded(tmp_path: Path, suffix: str) -> None:
 def test_it_is_the_inner_transport_to_all_others(tmp_path: Path, suffix: str) -> None:
     inner = MemoryTransport(Script(), name="sim:here")
     line = TracedTransport(inner, open_trace(tmp_path / f"line{suffix}", "facon"))
-    assert (line.name, line.line, line.clock) == ("sim:here", None, inner.clock)
+    assert (line.name, line.serial_settings, line.clock) == ("sim:here", None, inner.clock)
     line.renew()
     line.close()
     line.close()
@@ -426,16 +426,16 @@ def test_a_text_of_something_else() -> None:
     for data in (b"root:x:0:0\n", b"{\n", b"[]\n", b'{"time": 1}\n'):
         with pytest.raises(DataError) as caught:
             list(read_trace(data, "x"))
-        assert caught.value.message == "x: line 1: no trace record"
+        assert caught.value.message == "x: line 1: not a trace record"
         assert "that --trace wrote" in str(caught.value.hint)
 
 
 def test_a_capture_of_something_else() -> None:
     data = bytearray(written(".pcap"))
     data[20] = 1  # Ethernet
-    with pytest.raises(DataError, match="no trace of this program: expected link type 147"):
+    with pytest.raises(DataError, match="not a trace of this program: expected link type 147"):
         list(read_trace(bytes(data), "line.pcap"))
-    with pytest.raises(DataError, match=r"^x: line 4: no trace record"):
+    with pytest.raises(DataError, match=r"^x: line 4: not a trace record"):
         list(read_trace(bytes.fromhex("0A0D0D0A 1C000000"), "x"))  # pcapng
 
 

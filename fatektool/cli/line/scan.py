@@ -133,7 +133,7 @@ def scan_command(
             )
     with ExitStack() as stack:
         transport = connection.open_line(voice, stack)
-        serial = transport.line is not None
+        serial = transport.serial_settings is not None
         networks = [setting.codec.name for setting in settings if setting.codec.data_bits is None]
         if serial and networks:
             raise UsageError(f"{networks[0]} is for networks: {connection.address.target} is a serial line")
@@ -175,7 +175,7 @@ def _settings(
     found: dict[ScanSetting, None] = {}
     for name in protocols or (address.protocol,):
         own = address.changed(protocol=name)
-        codec, tried = own.codec, formats or (own.line.format,)
+        codec, tried = own.codec, formats or (own.line_settings.format,)
         lines = [LineSettings(baud, form) for baud in bauds or (own.baud,) for form in tried]
         carrying = [line for line in lines if line.data_bits >= (codec.data_bits or 0)]
         if not carrying:

@@ -62,9 +62,9 @@ def line_name(target: str) -> str:
         return f"{found.host.lower()}:{found.port}"
     if found.kind is TargetKind.MODEM:  # many PLCs are called by one
         return target
-    from fatektool.transport.serial_line.url import line_of
+    from fatektool.transport.serial_line.url import line_name
 
-    return line_of(found.path)
+    return line_name(found.path)
 
 
 def state_folder() -> str:

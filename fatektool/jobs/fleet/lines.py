@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import LineError
 from fatektool.transport.serial_line.url import host_of
-from fatektool.transport.serial_line.url import line_of as serial_line
+from fatektool.transport.serial_line.url import line_name as serial_line_name
 from fatektool.transport.target import Target, TargetKind
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _LOOK_UP_S: Final = 5.0
 
 
-def line_of(address: PlcAddress, name: str, addresses: dict[str, str]) -> str:
+def line_name(address: PlcAddress, name: str, addresses: dict[str, str]) -> str:
     """What a PLC's line is called: the same for two PLCs that must not be asked at once.
 
     Args:
@@ -35,7 +35,7 @@ def line_of(address: PlcAddress, name: str, addresses: dict[str, str]) -> str:
     gateway = _host(where)
     if gateway is not None:
         return f"{addresses.get(gateway[0], gateway[0])}:{gateway[1]}"
-    return serial_line(where.path)
+    return serial_line_name(where.path)
 
 
 def addresses_of(targets: Iterable[str], wait_s: float = _LOOK_UP_S) -> dict[str, str]:

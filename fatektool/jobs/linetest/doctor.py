@@ -109,7 +109,7 @@ def examine(plc: Plc, on_step: Callable[[str, int, int], object] = lambda *_: No
         else:
             found.findings += _of_flags(found.brief)
             found.findings += high_speed_findings(plc)
-    elif link.transport.line is not None:
+    elif link.transport.serial_settings is not None:
         found.searched = _look_elsewhere(plc, on_step)
         found.findings += [_answers_elsewhere(station) for station in found.elsewhere]
     return found
@@ -155,7 +155,7 @@ def _look_elsewhere(plc: Plc, on_step: Callable[[str, int, int], object]) -> Sca
             on_probe=lambda done, total: on_step("other settings", done, total),
         )
     finally:
-        link.transport.set_line(link.line)
+        link.transport.configure(link.line)
     if result.interrupted:
         raise KeyboardInterrupt
     return result

@@ -201,7 +201,7 @@ class _Scanner:
     def _change_to(self, setting: ScanSetting) -> None:
         if self._setting is None or setting.line != self._setting.line:
             try:
-                self._transport.set_line(setting.line)
+                self._transport.configure(setting.line)
             except LineError:  # not every adapter has every speed
                 self._result.refused.append(setting)
                 self._done.add(setting)

@@ -90,7 +90,7 @@ def backup_of(plc: Plc, reading: ProgramReading) -> Backup:
         program=reading.program,
         created=utc(),
         tool=f"fatektool {__version__}",
-        source=Source(plc.target, plc.link.station, plc.link.codec.name, plc.link.transport.line),
+        source=Source(plc.target, plc.link.station, plc.link.codec.name, plc.link.transport.serial_settings),
         plc={
             "status": reading.status.flags.document(),
             "system": reading.status.system.document(),

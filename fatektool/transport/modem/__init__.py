@@ -1,1 +1,1 @@
-"""A modem between this computer and the PLC: the call, its commands, its results."""
+"""A modem between this computer and the PLC: its commands and results, the call."""

@@ -1,13 +1,13 @@
-r"""A modem in its command state: a line to it, a result from it (ITU-T V.250).
+r"""A modem in its command state: commands to it, results from it (ITU-T V.250).
 
 ::
 
-    AT…\r  ->      \r\nBUSY\r\n      in words (V1)
-                   7\r               in figures (V0)
+    AT…\r  ->      \r\nBUSY\r\n      a result as text (V1)
+                   7\r               a result as a number (V0)
                    AT…\r             the command itself, while echo is on (E1)
-    during a call:  +++ within silence  ->  command state again, the call still up
+    during a call:  +++ between silences  ->  command state, the call stays up
 
-Figures above 8 differ from maker to maker, but for 10, so they are no result: the modem is asked for words.
+Numbers above 8, except 10, differ between makers, so they are not used: the modem is set to text.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _END: Final = re.compile(rb"[\r\n]")
 
 
 class Result(Enum):
-    """What ends a command."""
+    """The result that ends a command."""
 
     OK = "OK"
     CONNECT = "CONNECT"
@@ -65,10 +65,10 @@ _BEGINNINGS: Final = {
 
 
 def result_of(line: str) -> Result | None:
-    """What a line means; None for one that ends nothing: an echo, RING, CARRIER 9600.
+    """The result in a line; None for another line, such as an echo, RING, or CARRIER 9600.
 
     Args:
-        line: without its end.
+        line: without its line end.
     """
     text = line.strip().upper()
     if text in _FIGURES:
@@ -83,15 +83,15 @@ def result_of(line: str) -> Result | None:
 
 
 class ModemCommands:
-    """Talks to a modem.
+    """Sends commands to a modem, and receives results.
 
     Args:
-        port: the modem's serial port.
-        guard_s: silence that the modem wants around ``+++``.
-        note: is told the dialogue.
+        port: the serial port of the modem.
+        guard_s: silence before and after ``+++``, in seconds.
+        note: gets each command and result, for ``-v``.
 
     Attributes:
-        heard: the first bytes that came since the last command.
+        heard: the first bytes received since the last command.
     """
 
     def __init__(self, port: Transport, guard_s: float, note: Callable[[str], None]) -> None:
@@ -101,10 +101,10 @@ class ModemCommands:
         self._note = note
 
     def ask(self, command: str, wait_s: float) -> Result | None:
-        """Give a command, and wait so many seconds for its result; None if none came.
+        """Send a command and wait so many seconds for its result; None if there is none.
 
         Raises:
-            TransportError: the port is gone.
+            TransportError: the port is lost.
         """
         self._port.drain()
         self._note(f"to the modem: {command}")
@@ -112,10 +112,10 @@ class ModemCommands:
         return self.result(wait_s)
 
     def result(self, wait_s: float) -> Result | None:
-        """Wait so many seconds for a result; what stands behind it in the input is dropped.
+        """Wait so many seconds for a result; bytes after it are dropped.
 
         Raises:
-            TransportClosed: the port is gone.
+            TransportClosed: the port is lost.
         """
         self.heard = b""
         line = b""
@@ -125,7 +125,7 @@ class ModemCommands:
                 data = self._port.read(_READ_BYTES, rest)
             except TransportTimeout:
                 continue
-            data = bytes(byte & 0x7F for byte in data)  # the eighth may be the modem's parity
+            data = bytes(byte & 0x7F for byte in data)  # the eighth bit may be parity
             self.heard = (self.heard + data)[:_SAMPLE_BYTES]
             *lines, line = _END.split(line + data)
             line = line[-_LONGEST_LINE:]
@@ -139,10 +139,10 @@ class ModemCommands:
         return None
 
     def rest(self, seconds: float) -> None:
-        """Let time pass; what comes is dropped.
+        """Wait so many seconds; received bytes are dropped.
 
         Raises:
-            TransportClosed: the port is gone.
+            TransportClosed: the port is lost.
         """
         deadline = self._port.clock() + seconds
         while (left := deadline - self._port.clock()) > 0:
@@ -152,13 +152,13 @@ class ModemCommands:
                 continue
 
     def escape(self, wait_s: float) -> Result | None:
-        """From a call to the command state, by ``+++`` within silence; the call stays up.
+        """Go from a call to the command state, with ``+++`` between silences; the call stays up.
 
         Args:
-            wait_s: for the result, beside the silence.
+            wait_s: seconds to wait for the result, in addition to the silence.
 
         Raises:
-            TransportError: the port is gone.
+            TransportError: the port is lost.
         """
         self.rest(self._guard_s)
         self._note("to the modem: +++")

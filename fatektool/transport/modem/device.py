@@ -1,4 +1,4 @@
-"""A PLC behind a telephone line: a serial port with a modem on it, which calls, carries bytes and hangs up.
+"""A PLC on a telephone line: a serial port with a modem that calls and hangs up.
 
 ::
 
@@ -7,9 +7,9 @@
      └── any byte ────┘    ┌── DTR off, or +++ and ATH ─────────┘
      └──────────────── close
 
-However the work ends, ``close`` hangs up: a telephone line left open costs money and keeps the PLC from
-everybody else. If the process is killed the system drops DTR, at which most modems hang up (&D2); one that
-did not is brought back by +++ when the next call begins.
+``close`` always hangs up: an open call costs money and blocks the PLC for others. If the process is killed,
+the system switches off DTR, with which most modems hang up (&D2). If a modem did not, +++ ends that call
+before the next one.
 
 The paper: FBs-PLC communication link, chapter 13, the modem at port 1.
 """
@@ -32,31 +32,31 @@ if TYPE_CHECKING:
     from fatektool.transport.modem.dial import Call
 
 _SETUP: Final = "ATE0Q0V1"
-"""No echo, results given, in words."""
+"""No echo, results on, results as text."""
 
 _ANSWER_S: Final = 1.0
 _SLOW_ANSWER_S: Final = 5.0
 _SETTLE_S: Final = 0.2
-"""What a modem still says of a connection behind its CONNECT comes within this."""
+"""Text about the connection after CONNECT is received within this time."""
 
 _FIFTIETHS: Final = 50
 _CALL_ENDED: Final = b"\r\nNO CARRIER\r\n"
 _MAY_HELP: Final = {Result.BUSY, Result.NO_CARRIER, Result.NO_ANSWER, None}
-"""After these another try may find a connection."""
+"""After these results another call may succeed."""
 
 _ADVICE: Final = {
-    Result.BUSY: "somebody else is connected, or the line is in use: call later",
-    Result.NO_CARRIER: "no modem took the call, or the two found no common speed: is the number right, "
-    "and is the PLC's modem on?",
-    Result.NO_ANSWER: "nobody takes the call: are the PLC and its modem on, and does it answer by itself "
-    "(R4149 high byte 55H, R4163 high byte: rings)?",
-    Result.NO_DIALTONE: "is the telephone line plugged in? Where the exchange gives no such tone, "
+    Result.BUSY: "the telephone line is in use: call later",
+    Result.NO_CARRIER: "no modem answered the call, or the modems found no common speed: check the number, "
+    "and that the PLC's modem is on",
+    Result.NO_ANSWER: "the call is not answered: check that the PLC and its modem are on, and that it "
+    "answers calls (R4149 high byte 55H, R4163 high byte: rings)",
+    Result.NO_DIALTONE: "check that the telephone line is plugged in. If the exchange gives no dial tone, "
     "add init=ATX3",
-    Result.ERROR: "the modem does not take the number: try dial=pulse, or another init",
-    Result.OK: "the modem took the command and did not call: check init",
-    Result.VOICE: "a person took the call: check the number",
-    Result.BARRED: "the modem will not call this number again so soon: wait, or switch it off and on",
-    None: "no result came: is the number complete? A longer wait=… gives a slow exchange more time",
+    Result.ERROR: "the modem does not accept the number: try dial=pulse, or another init",
+    Result.OK: "the modem accepted the command, but did not call: check init",
+    Result.VOICE: "a person answered the call: check the number",
+    Result.BARRED: "the modem does not call this number again so soon: wait, or switch it off and on",
+    None: "no result: check that the number is complete. A slow exchange needs a longer wait=…",
 }
 
 
@@ -69,14 +69,15 @@ class _State(Enum):
 
 
 class ModemTransport(Transport):
-    """A modem's port; ``connect`` calls, ``close`` hangs up.
+    """The port of a modem; ``connect`` calls, ``close`` hangs up.
 
-    It has no ``line``: the port's speed is that to the modem, and the PLC's cannot be changed from here.
+    It has no ``serial_settings``: those of the port are between computer and modem, and those of the PLC
+    cannot be set from here.
 
     Args:
-        port: the serial port, open; closed with this.
-        call: whom to call and how.
-        note: is told the dialogue with the modem.
+        port: the open serial port; closed with this.
+        call: the number to call, and how.
+        note: gets each command and result of the modem, for ``-v``.
     """
 
     def __init__(self, port: Transport, call: Call, note: Callable[[str], None] = ignore) -> None:
@@ -92,10 +93,10 @@ class ModemTransport(Transport):
     # --- the call -----------------------------------------------------------------------------------
 
     def connect(self) -> None:
-        """Wake the modem, set it up and call, as often as it may help.
+        """Find the modem, set it up and call, with retries.
 
         Raises:
-            LineError: no connection; the message says what the modem said.
+            LineError: no connection; the message has the modem's results.
         """
         self._wake()
         for command in (*self._call.init, _SETUP):
@@ -103,7 +104,7 @@ class ModemTransport(Transport):
         guard = max(1, int(self._call.guard_s * _FIFTIETHS))
         for command in (f"ATS7={ceil(self._call.wait_s)}", f"ATS2=43S12={guard}"):
             if self._modem.ask(command, _ANSWER_S) is not Result.OK:
-                self._note(f"{self._port.name}: the modem does not take {command}")
+                self._note(f"{self._port.name}: the modem does not accept {command}")
         outcomes: list[Result | None] = []
         while len(outcomes) < self._call.tries:
             if outcomes:
@@ -118,29 +119,29 @@ class ModemTransport(Transport):
         raise self._no_connection(outcomes)
 
     def _wake(self) -> None:
-        """Find the modem in its command state, or bring it there."""
-        for _ in range(2):  # it may learn the speed from the first
+        """Find the modem in its command state, or bring it into that state."""
+        for _ in range(2):  # it may detect the speed from the first
             if self._modem.ask(_SETUP, _ANSWER_S) is not None:
                 return
         heard = self._modem.heard
-        self._modem.escape(_ANSWER_S)  # a call that a killed process left behind
+        self._modem.escape(_ANSWER_S)  # a call of a process that was killed
         self._modem.ask("ATH", _ANSWER_S)
         if self._modem.ask(_SETUP, _ANSWER_S) is not None:
             return
-        said = f"heard {heard.hex(' ').upper()}, which is no result" if heard else "nothing heard"
+        got = f"received {heard.hex(' ').upper()}, which is not a result" if heard else "nothing received"
         raise LineError(
-            f"{self._port.name}: no modem answers {_SETUP} at {self._port.line}: {said}",
-            hint="is the modem on and the cable in? Most modems want --format 8N1",
+            f"{self._port.name}: no modem answers {_SETUP} at {self._port.serial_settings}: {got}",
+            hint="check that the modem is on, and its cable. Most modems need --format 8N1",
             result=None,
         )
 
     def _require(self, command: str) -> None:
         result = self._modem.ask(command, _SLOW_ANSWER_S)
         if result is not Result.OK:
-            said = result.value if result else "nothing"
+            got = result.value if result else "nothing"
             raise LineError(
-                f"{self._port.name}: the modem answers {command} with {said}, expected OK",
-                hint="check init= against the modem's manual",
+                f"{self._port.name}: {command} to the modem: expected OK, got {got}",
+                hint="check init= with the manual of the modem",
                 result=result.value if result else None,
             )
 
@@ -148,16 +149,16 @@ class ModemTransport(Transport):
         self._state = _State.CALLING
         result = self._modem.ask(self._call.command, self._call.wait_s)
         if result is None and self._modem.ask("", _SLOW_ANSWER_S) is Result.CONNECT:
-            result = Result.CONNECT  # just as it was given up
+            result = Result.CONNECT  # received just after the wait
         self._state = _State.ONLINE if result is Result.CONNECT else _State.IDLE
         return result
 
     def _no_connection(self, outcomes: list[Result | None]) -> LineError:
-        said = [outcome.value if outcome else f"nothing for {self._call.wait_s:g} s" for outcome in outcomes]
+        got = [outcome.value if outcome else f"nothing for {self._call.wait_s:g} s" for outcome in outcomes]
         count = f"{len(outcomes)} {'try' if len(outcomes) == 1 else 'tries'}"
         return LineError(
-            f"{self._port.name}: no connection to {self._call.number} in {count}: the modem said "
-            f"{', '.join(said)}",
+            f"{self._port.name}: no connection to {self._call.number} in {count}: the modem reported "
+            f"{', '.join(got)}",
             hint=_ADVICE[outcomes[-1]],
             result=outcomes[-1].value if outcomes[-1] else None,
             tries=len(outcomes),
@@ -166,7 +167,7 @@ class ModemTransport(Transport):
     # --- bytes --------------------------------------------------------------------------------------
 
     def read(self, max_bytes: int, timeout_s: float) -> bytes:
-        """Read what is there first; what came before the end of the call is given before it is told."""
+        """Read what is received first; bytes before the end of a call are returned before its error."""
         self._require_online()
         data = self._until_the_end(self._port.read(max_bytes, timeout_s))
         if not data:
@@ -179,11 +180,11 @@ class ModemTransport(Transport):
         self._port.write(data)
 
     def drain(self) -> bytes:
-        """Take what was received already."""
+        """Return what was received already."""
         return self._until_the_end(self._port.drain()) if self._state is _State.ONLINE else b""
 
     def _until_the_end(self, data: bytes) -> bytes:
-        """The bytes before the modem's word that the call has ended, which may come in pieces."""
+        """The bytes before the modem's message that the call has ended, which may be received in pieces."""
         before = len(self._heard)
         heard = self._heard + data
         place = heard.find(_CALL_ENDED)
@@ -202,31 +203,31 @@ class ModemTransport(Transport):
     def _ended(self) -> TransportClosed:
         return TransportClosed(
             f"{self.name}: the call ended (NO CARRIER)",
-            hint="a bad telephone line, or the other modem hung up: run it again after ten seconds",
+            hint="a bad telephone line, or the other modem hung up: run again after ten seconds",
         )
 
     # --- the end ------------------------------------------------------------------------------------
 
     def close(self) -> None:
-        """Hang up, whatever state the call is in, and close the port."""
+        """Hang up in any state of the call, and close the port."""
         state, self._state = self._state, _State.CLOSED
         try:
             if state in {_State.CALLING, _State.ONLINE, _State.LOST}:
-                with contextlib.suppress(TransportError):  # the port is gone, and DTR with it
+                with contextlib.suppress(TransportError):  # the port is lost, and DTR with it
                     self._hang_up(state)
         finally:
             self._port.close()
 
     def _hang_up(self, state: _State) -> None:
         modem = self._modem
-        if state is _State.CALLING:  # any character ends the dialling (V.250)
+        if state is _State.CALLING:  # any character stops the dialling (V.250)
             modem.ask("", _ANSWER_S)
         if self._port.set_dtr(on=False):
             if modem.result(_ANSWER_S) is not None:
                 return
-            self._port.set_dtr(on=True)  # without it many modems take no command
+            self._port.set_dtr(on=True)  # many modems accept no command without it
         if state is not _State.ONLINE and modem.ask("ATH", _ANSWER_S) is Result.OK:
             return
         modem.escape(_ANSWER_S)
         if modem.ask("ATH", _SLOW_ANSWER_S) not in {Result.OK, Result.NO_CARRIER}:
-            self._note(f"{self._port.name}: the modem does not say that it hung up")
+            self._note(f"{self._port.name}: the modem does not confirm that it hung up")

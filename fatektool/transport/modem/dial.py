@@ -1,19 +1,19 @@
-"""A call as a value: what ``modem:/dev/ttyUSB0?number=0228082192&init=AT%26F`` says behind the question mark.
+"""The options of a call, after the question mark of ``modem:/dev/ttyUSB0?number=0228082192&init=AT%26F``.
 
 ::
 
-    number   digits, a pause as a comma, * # W (wait for another dial tone)     must be there
-    init     a command for the modem before the call; again for more            none
+    number   digits, a comma for a pause, * # W (wait for another dial tone)    required
+    init     a command for the modem before the call; repeat for more           none
     dial     tone or pulse                                                      tone
-    wait     seconds for CONNECT, a try                                         60
-    tries    calls                                                              3
-    pause    seconds between two of them                                        11
-    guard    seconds of silence around the escape sequence +++                  1
+    wait     seconds to wait for CONNECT, for each call                         60
+    tries    maximum number of calls                                            3
+    pause    seconds between two calls                                          11
+    guard    seconds of silence before and after the escape sequence +++        1
 
-Wait and tries are those of a PLC that calls (FBs link paper, chapter 13, modem, note 2), the pause is what
-note 3 there asks of a ladder program. Options are percent-encoded: ``&`` is ``%26``.
+The defaults of wait and tries are those of a PLC that calls (FBs link paper, chapter 13, modem, note 2); the
+pause is what note 3 there asks of a ladder program. Options are percent-encoded: ``&`` is ``%26``.
 
-Nothing gets into a dial command that is no part of a number: no separator, no end of line.
+A dial command contains only characters of a number: no separator and no line end.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 LONGEST_NUMBER: Final = 40
-"""Characters; a modem keeps a command line of 40 at least (V.250)."""
+"""Characters; a modem accepts a command line of at least 40 (V.250)."""
 
 _NUMBER: Final = re.compile(rf"[0-9,*#W]{{1,{LONGEST_NUMBER}}}", re.ASCII)
 _COMMAND: Final = re.compile(r"AT[\x20-\x7E]{0,76}", re.ASCII | re.IGNORECASE)
@@ -39,16 +39,16 @@ _HINT: Final = "such as modem:/dev/ttyUSB0?number=0228082192&init=AT%26F&dial=to
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """How to call.
+    """The number to call, and how.
 
     Attributes:
         number: digits, ``,`` ``*`` ``#`` ``W``.
-        init: commands before the call, each with its AT.
+        init: commands before the call, each beginning with AT.
         pulse: True for pulse dialling.
-        wait_s: 1 to 255 seconds for a connection, a try.
+        wait_s: 1 to 255 seconds to wait for a connection, for each call.
         tries: 1 to 20 calls.
         pause_s: 0 to 600 seconds between two calls.
-        guard_s: 0.02 to 5.1 seconds of silence around ``+++``: a modem counts them in fiftieths, in one byte.
+        guard_s: 0.02 to 5.1 seconds of silence before and after ``+++``: one byte in units of 1/50 s.
     """
 
     number: str
@@ -61,13 +61,13 @@ class Call:
 
     @classmethod
     def parse(cls, query: str) -> Call:
-        """Read the options of a target.
+        """Parse the options of a target.
 
         Args:
-            query: what stands behind the question mark.
+            query: the text after the question mark.
 
         Raises:
-            UsageError: an option that is unknown, twice there, or not what it should be; or no number.
+            UsageError: an unknown, repeated or invalid option, or no number.
         """
         named: dict[str, object] = {}
         init: list[str] = []
@@ -80,12 +80,12 @@ class Call:
             read = _OPTIONS.get(name)
             if read is None:
                 raise UsageError(
-                    f"modem target: no option {name[:40]!r}: expected {', '.join(['init', *_OPTIONS])}",
-                    hint=f"{_HINT}; an '&' within a value is %26",
+                    f"modem target: unknown option {name[:40]!r}: expected {', '.join(['init', *_OPTIONS])}",
+                    hint=f"{_HINT}; write '&' in a value as %26",
                 )
             field, convert = read
             if field in named:
-                raise UsageError(f"modem target: {name} is there twice", hint=_HINT)
+                raise UsageError(f"modem target: {name} is given twice", hint=_HINT)
             named[field] = convert(value)
         if "number" not in named:
             raise UsageError("modem target: expected number=…, the number to call", hint=_HINT)
@@ -93,7 +93,7 @@ class Call:
 
     @property
     def command(self) -> str:
-        """What makes the modem call."""
+        """The dial command."""
         return f"ATD{'P' if self.pulse else 'T'}{self.number}"
 
 

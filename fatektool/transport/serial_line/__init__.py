@@ -1,1 +1,1 @@
-"""Serial ports: opening, settings, errors in the project's words."""
+"""Serial ports: opening, settings, errors."""

@@ -1,4 +1,4 @@
-"""What pyserial raises, in the project's words, each with its next step."""
+"""The errors of pyserial as the project's own, each with its next step."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ if TYPE_CHECKING:
     from fatektool.transport.base import LineSettings
 
 
-def open_error(target: str, line: LineSettings, error: Exception) -> FatektoolError:
-    """A target that cannot be opened, in the project's words.
+def open_error(target: str, settings: LineSettings, error: Exception) -> FatektoolError:
+    """The error for a target that cannot be opened.
 
     Args:
         target: as the user wrote it.
-        line: speed and format asked for.
-        error: what pyserial, a URL handler of its, or termios raised.
+        settings: speed and format.
+        error: of pyserial, one of its URL handlers, or termios.
     """
     cause: BaseException = error
-    if type(error.__context__).__name__ == "error":  # of termios: pyserial keeps its number as text only
+    if type(error.__context__).__name__ == "error":  # of termios: pyserial keeps its number only as text
         cause = error.__context__ or error
     if wrong := _wrong_url(target, error):
         return wrong
@@ -30,38 +30,38 @@ def open_error(target: str, line: LineSettings, error: Exception) -> FatektoolEr
     if number in {errno.EBUSY, errno.EAGAIN, errno.EWOULDBLOCK} or "exclusively lock" in text:
         return PortBusy(
             f"{target}: another program has the port open",
-            hint="close it (a terminal, the vendor's program), or wait and run again",
+            hint="close that program (a terminal, the vendor's software), or wait and run again",
         )
     if number == errno.ENOENT or "FileNotFoundError" in text:
         return LineError(
             f"{target}: no such port",
-            hint="'fatektool ports' lists the serial ports here; is the adapter plugged in?",
+            hint="check that the adapter is plugged in; 'fatektool ports' lists the serial ports",
         )
     if number in {errno.EACCES, errno.EPERM} or "PermissionError" in text:
         return LineError(
-            f"{target}: no right to use the port",
-            hint="on Linux join the group that owns it (often dialout) and log in again",
+            f"{target}: no permission to use the port",
+            hint="on Linux add your user to the group that owns it (often dialout), and log in again",
         )
     if number in {errno.EINVAL, errno.ENOTTY} or isinstance(error, ValueError):
         return LineError(
-            f"{target}: cannot be used as a serial port at {line}: {text}",
-            hint="check the name, --baud and --format against what the adapter can do",
+            f"{target}: cannot be used as a serial port at {settings}: {text}",
+            hint="check the name; check that the adapter supports this --baud and --format",
         )
-    hint = "check the URL" if "://" in target else "try 'fatektool ports'"
+    hint = "check the URL" if "://" in target else "'fatektool ports' lists the serial ports"
     return LineError(f"{target}: cannot open: {text}", hint=hint)
 
 
 def network_error(
-    target: str, line: LineSettings, error: Exception, *, lost: bool = False, said: str = ""
+    target: str, settings: LineSettings, error: Exception, *, lost: bool = False, said: str = ""
 ) -> FatektoolError:
-    """A URL of another computer that cannot be opened, in the project's words.
+    """The error for a URL of a gateway that cannot be opened.
 
     Args:
         target: as the user wrote it.
-        line: speed and format asked for.
-        error: what pyserial raised.
+        settings: speed and format.
+        error: of pyserial.
         lost: True if the gateway closed the connection that it had accepted.
-        said: what it said before.
+        said: text that it sent before; empty for none.
     """
     cause = error.__context__
     if wrong := _wrong_url(target, error):
@@ -77,23 +77,23 @@ def network_error(
         )
     if "does not seem to support RFC2217" in str(error):
         return LineError(
-            f"{target}: the other side is there and does not speak RFC 2217",
-            hint="for a port that carries bare bytes use tcp:// or socket://; else set the gateway's port to "
-            "RFC 2217 (telnet)",
+            f"{target}: the other side accepts the connection, but does not use RFC 2217",
+            hint="for a raw TCP port use tcp:// or socket://; else set the port of the gateway to RFC 2217 "
+            "(telnet)",
         )
     if "parameter change" in str(error) or "rejected value" in str(error):
         return LineError(
-            f"{target}: the gateway does not set its serial port to {line}",
+            f"{target}: the gateway does not set its serial port to {settings}",
             hint="check --baud and --format; or set the port in the gateway, and use tcp:// or socket://",
         )
     return LineError(f"{target}: cannot open: {error}", hint="check the URL, and that the gateway is on")
 
 
 def _wrong_url(target: str, error: Exception) -> UsageError | None:
-    """The error of a URL that pyserial does not understand; None for any other."""
+    """The error for a URL that pyserial cannot parse; None if ``error`` is another one."""
     if isinstance(error, ValueError) and str(error).startswith("invalid URL, protocol"):
         return UsageError(
-            f"{target}: no such kind of target: {target.partition('://')[0]}://",
+            f"{target}: unknown kind of target: {target.partition('://')[0]}://",
             hint="expected a serial port such as /dev/ttyUSB0 or COM3, tcp://, udp://, rfc2217://, "
             "socket://, hwgrep://, spy:// or sim:",
         )
@@ -107,16 +107,16 @@ def _wrong_url(target: str, error: Exception) -> UsageError | None:
 
 
 def gateway_closed(target: str, said: str) -> TransportClosed:
-    """The error of a connection that is gone.
+    """The error for a connection that is lost.
 
     Args:
         target: as the user wrote it.
-        said: what it said in plain text before; empty for nothing.
+        said: text that the gateway sent before; empty for none.
     """
-    words = f", after it said {said!r}" if said else ""
+    reason = f", after it sent {said!r}" if said else ""
     return TransportClosed(
-        f"{target}: the connection to the gateway was closed or broke{words}",
-        hint="is the gateway on, and the cable in? Another program may hold its only connection, or its "
-        "serial port is not there",
+        f"{target}: the connection to the gateway was closed or lost{reason}",
+        hint="check that the gateway is on, and its cable. Another program may use its only connection, "
+        "or its serial port is missing",
         may_return=True,
     )

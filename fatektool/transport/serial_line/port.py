@@ -1,15 +1,15 @@
 """A serial port, by pyserial: a device, or any of pyserial's URLs.
 
-A device on Linux or macOS is read and written through its file descriptor, waiting by ``poll``: setting
-pyserial's time-out anew for each read would reconfigure the port each time. Other ports (Windows, URLs) keep
-one short time-out for good, and longer ones are made of it.
+A device on Linux or macOS is read and written through its file descriptor, with ``poll``: with pyserial, a
+new time-out for each read would configure the port again each time. Other ports (Windows, URLs) keep one
+short time-out, and wait longer in a loop.
 
-pyserial has parity sent, but not checked in what comes. So the driver is asked to check it: a byte with a
-wrong one is then read as 00, and its frame is none. The 8-bit checksum alone lets one damaged answer in some
-hundred pass.
+pyserial sends parity, but does not check it in received bytes. So the driver is asked to check it: a byte
+with wrong parity is read as 00, and its frame is invalid. The 8-bit checksum alone accepts one damaged answer
+in a few hundred.
 
-A pseudo terminal has neither parity nor 7 bits, and Linux refuses such a format from its second opening
-on, so it is opened as 8N1, at the speed asked for: nothing is lost, as a pty's bytes pass whole.
+A pseudo terminal has neither parity nor 7 bits, and Linux refuses such a format from its second opening on.
+So it is opened as 8N1, at the given speed: nothing is lost, because a pty passes 8 bits.
 """
 
 from __future__ import annotations
@@ -24,7 +24,13 @@ from fatektool.errors import TransportClosed, TransportTimeout
 from fatektool.transport.base import DRAIN_LIMIT, MOST_SAID, WRITE_TIMEOUT_S, LineSettings, Transport
 from fatektool.transport.said import said_text
 from fatektool.transport.serial_line.errors import gateway_closed, network_error, open_error
-from fatektool.transport.serial_line.settings import PORT_ERRORS, check_parity, of_pty, set_dtr, set_line
+from fatektool.transport.serial_line.settings import (
+    PORT_ERRORS,
+    check_parity,
+    configure_port,
+    of_pty,
+    set_dtr,
+)
 from fatektool.transport.serial_line.url import SEARCH, device_of, host_of
 from fatektool.transport.wait import readable, writable
 
@@ -35,72 +41,72 @@ _SLICE_S: Final = 0.02
 
 
 def open_serial(
-    target: str, line: LineSettings, *, low_latency: bool = True, note: Callable[[str], None] = ignore
+    target: str, settings: LineSettings, *, low_latency: bool = True, note: Callable[[str], None] = ignore
 ) -> Transport:
     """Open a serial port for this process alone.
 
     Args:
         target: a device or a pyserial URL.
-        line: speed and format.
-        low_latency: on Linux, ask the driver not to hold received bytes back (a USB adapter otherwise adds
+        settings: speed and format.
+        low_latency: on Linux, ask the driver to pass on received bytes at once (a USB adapter otherwise adds
             up to 16 ms to each exchange).
-        note: is told what a curious user may want to know.
+        note: gets details, for ``-v``.
 
     Raises:
         PortBusy: another program has the port open.
-        LineError: the port is not there, may not be used, or does not take this speed or format.
+        LineError: no such port, no permission, or it does not have this speed or format.
     """
     host = host_of(target)
     device = None if host else device_of(target)
     pty = device is not None and _is_pty(device)
     if target.lower().startswith(SEARCH) and device is not None:
         note(f"{target} is {device}")
-        return open_serial(device, line, low_latency=low_latency, note=note)
+        return open_serial(device, settings, low_latency=low_latency, note=note)
     if pty:
-        note(f"{target} is a pseudo terminal, which has no {line.format}: opened as 8N1")
-    port = _open(target, of_pty(line) if pty else line)
+        note(f"{target} is a pseudo terminal, which has no {settings.format}: opened as 8N1")
+    port = _open(target, of_pty(settings) if pty else settings)
     if low_latency and not pty and sys.platform == "linux" and "://" not in target:
         try:
             port.set_low_latency_mode(True)
         except PORT_ERRORS as error:
-            note(f"{target}: the driver has no low latency mode: {error}")
-    if hasattr(port, "fd") and os.name == "posix" and "://" not in target:  # spy:// wants to be asked
-        if not (pty or check_parity(port.fd, line)):
-            note(f"{target}: the driver does not check the parity of what it receives")
-        return DeviceTransport(target, line, port, pty=pty)
-    return SerialTransport(target, line, port, pty=pty, again=None if host is None else _open)
+            note(f"{target}: the driver has no low-latency mode: {error}")
+    if hasattr(port, "fd") and os.name == "posix" and "://" not in target:  # spy:// must do the reading
+        if not (pty or check_parity(port.fd, settings)):
+            note(f"{target}: the driver does not check the parity of received bytes")
+        return DeviceTransport(target, settings, port, pty=pty)
+    return SerialTransport(target, settings, port, pty=pty, again=None if host is None else _open)
 
 
-def _open(target: str, line: LineSettings) -> Any:
+def _open(target: str, settings: LineSettings) -> Any:
     import serial
 
-    settings: dict[str, Any] = {
-        "baudrate": line.baud,
-        "bytesize": line.data_bits,
-        "parity": line.parity,
-        "stopbits": line.stop_bits,
+    options: dict[str, Any] = {
+        "baudrate": settings.baud,
+        "bytesize": settings.data_bits,
+        "parity": settings.parity,
+        "stopbits": settings.stop_bits,
         "timeout": _SLICE_S,
     }
     if target.lower().startswith("rfc2217://"):
         from fatektool.transport.rfc2217 import Rfc2217Port
 
-        gateway = Rfc2217Port(target, WRITE_TIMEOUT_S, **settings)
+        gateway = Rfc2217Port(target, WRITE_TIMEOUT_S, **options)
         try:
             gateway.open()
         except PORT_ERRORS as error:
             lost = gateway.lost or isinstance(error, ConnectionError)
-            raise network_error(target, line, error, lost=lost, said=gateway.said) from error
+            raise network_error(target, settings, error, lost=lost, said=gateway.said) from error
         return gateway
     try:
-        return serial.serial_for_url(target, write_timeout=WRITE_TIMEOUT_S, exclusive=True, **settings)
+        return serial.serial_for_url(target, write_timeout=WRITE_TIMEOUT_S, exclusive=True, **options)
     except PORT_ERRORS as error:
         if host_of(target):
-            raise network_error(target, line, error) from error
-        raise open_error(target, line, error) from error
-    except Exception as error:  # a URL handler or termios with an error of its own
+            raise network_error(target, settings, error) from error
+        raise open_error(target, settings, error) from error
+    except Exception as error:  # an error class of a URL handler or of termios
         if type(error).__name__ != "error" and "://" not in target:
             raise
-        raise open_error(target, line, error) from error
+        raise open_error(target, settings, error) from error
 
 
 def _is_pty(device: str) -> bool:
@@ -113,30 +119,30 @@ def _is_pty(device: str) -> bool:
 
 
 class SerialTransport(Transport):
-    """A port that only pyserial can wait for: on Windows, or behind a URL.
+    """A port that is read through pyserial: on Windows, or with a URL.
 
-    A connection to a gateway that broke is made anew at the next ``write``, as over TCP.
+    After a connection to a gateway is lost, the next ``write`` makes a new one, as over TCP.
 
     Args:
         name: the target, for messages.
-        line: speed and format.
-        port: pyserial's, open.
-        pty: True for a pseudo terminal behind a URL.
-        again: opens another, of a gateway.
+        settings: speed and format.
+        port: the open port of pyserial.
+        pty: True for a pseudo terminal with a URL.
+        again: opens a new connection to a gateway; None for a device.
     """
 
     def __init__(
         self,
         name: str,
-        line: LineSettings,
+        settings: LineSettings,
         port: Any,
         *,
         pty: bool = False,
         again: Callable[[str, LineSettings], Any] | None = None,
     ) -> None:
         self.name = name
-        self.line = str(line)
-        self._settings = line
+        self.serial_settings = str(settings)
+        self._settings = settings
         self._port = port
         self._pty = pty
         self._again = again
@@ -148,29 +154,29 @@ class SerialTransport(Transport):
         if self._again is not None:
             return gateway_closed(self.name, said_text(bytes(self._first)))
         return TransportClosed(
-            f"{self.name}: the port is gone: {error}",
-            hint="was the adapter pulled out? plug it in and run again",
+            f"{self.name}: the port is lost: {error}",
+            hint="check that the adapter is plugged in, and run again",
         )
 
     def read(self, max_bytes: int, timeout_s: float) -> bytes:
-        """Read what is there first, at most ``max_bytes``."""
+        """Read what is received first, at most ``max_bytes``."""
         deadline = self.clock() + timeout_s
         while not (data := self._read_slice(max_bytes)):
             if self.clock() >= deadline:
-                raise TransportTimeout(f"{self.name}: nothing came within {timeout_s:.3f} s")
+                raise TransportTimeout(f"{self.name}: nothing received within {timeout_s:.3f} s")
         return data
 
     def _read_slice(self, max_bytes: int) -> bytes:
         try:
             data = bytes(self._port.read(min(max_bytes, max(1, self._port.in_waiting))))
-        except (OSError, ValueError, TypeError, AttributeError) as error:  # pyserial's, once it is closed
+        except (OSError, ValueError, TypeError, AttributeError) as error:  # of pyserial, after it is closed
             raise self._gone(error) from error
         if len(self._first) <= MOST_SAID:
             self._first += data
         return data
 
     def write(self, data: bytes) -> None:
-        """Write all of ``data``; connect first if the connection to a gateway was lost."""
+        """Write all of ``data``; after a connection to a gateway is lost, connect first."""
         if self._closed and self._again is not None:
             self._port = self._again(self.name, self._settings)
             self._closed = False
@@ -180,31 +186,31 @@ class SerialTransport(Transport):
         except (OSError, ValueError, TypeError, AttributeError) as error:
             if type(error).__name__ == "SerialTimeoutException":
                 self.renew()
-                raise TransportTimeout(f"{self.name}: takes no bytes for {WRITE_TIMEOUT_S} s") from error
+                raise TransportTimeout(f"{self.name}: the write blocked for {WRITE_TIMEOUT_S:g} s") from error
             raise self._gone(error) from error
 
     def drain(self) -> bytes:
-        """Take what was received already."""
+        """Return what was received already."""
         taken = bytearray()
         with contextlib.suppress(OSError, ValueError, TypeError, AttributeError):
             while len(taken) < DRAIN_LIMIT and (waiting := self._port.in_waiting):
                 taken += self._port.read(min(waiting, 4096))
         return bytes(taken)
 
-    def set_line(self, line: LineSettings) -> None:
-        """Take another speed and format."""
+    def configure(self, settings: LineSettings) -> None:
+        """Set speed and format."""
         if not (self._closed and self._again):  # else it is set with the next connection
-            set_line(self.name, of_pty(line) if self._pty else line, self._port)
-        self._settings = line
-        self.line = str(line)
+            configure_port(self.name, of_pty(settings) if self._pty else settings, self._port)
+        self._settings = settings
+        self.serial_settings = str(settings)
 
     def renew(self) -> None:
-        """Drop the connection to a gateway; the next ``write`` makes another."""
+        """Close the connection to a gateway; the next ``write`` makes a new one."""
         if self._again is not None:
             self.close()
 
     def set_dtr(self, *, on: bool) -> bool:
-        """Switch DTR; False if the port says that it has none."""
+        """Switch DTR; returns False if the port has none."""
         return set_dtr(self._port, on=on)
 
     def close(self) -> None:
@@ -212,7 +218,7 @@ class SerialTransport(Transport):
         if self._closed:
             return
         self._closed = True
-        connection = getattr(self._port, "_socket", None)  # of a URL; pyserial leaves a broken one open
+        connection = getattr(self._port, "_socket", None)  # of a URL; pyserial leaves a lost one open
         with contextlib.suppress(OSError, ValueError):
             self._port.close()
         if connection is not None:
@@ -222,9 +228,9 @@ class SerialTransport(Transport):
 class DeviceTransport(Transport):
     """A device on a POSIX system, through its file descriptor."""
 
-    def __init__(self, name: str, line: LineSettings, port: Any, *, pty: bool = False) -> None:
+    def __init__(self, name: str, settings: LineSettings, port: Any, *, pty: bool = False) -> None:
         self.name = name
-        self.line = str(line)
+        self.serial_settings = str(settings)
         self._port = port
         self._pty = pty
         self._descriptor: int = port.fd
@@ -234,20 +240,20 @@ class DeviceTransport(Transport):
     def _gone(self, reason: object) -> TransportClosed:
         self.close()
         return TransportClosed(
-            f"{self.name}: the port is gone: {reason}",
-            hint="was the adapter pulled out? plug it in and run again",
+            f"{self.name}: the port is lost: {reason}",
+            hint="check that the adapter is plugged in, and run again",
         )
 
     def read(self, max_bytes: int, timeout_s: float) -> bytes:
-        """Read what is there first, at most ``max_bytes``."""
+        """Read what is received first, at most ``max_bytes``."""
         if self._descriptor < 0:
             raise self._gone("closed")
         if not self._readable(timeout_s):
-            raise TransportTimeout(f"{self.name}: nothing came within {timeout_s:.3f} s")
+            raise TransportTimeout(f"{self.name}: nothing received within {timeout_s:.3f} s")
         try:
             data = os.read(self._descriptor, max_bytes)
         except BlockingIOError:
-            raise TransportTimeout(f"{self.name}: nothing came") from None
+            raise TransportTimeout(f"{self.name}: nothing received") from None
         except OSError as error:
             raise self._gone(error.strerror) from error
         if not data:
@@ -264,12 +270,14 @@ class DeviceTransport(Transport):
                 rest = rest[os.write(self._descriptor, rest) :]
             except BlockingIOError:
                 if not self._writable(WRITE_TIMEOUT_S):
-                    raise TransportTimeout(f"{self.name}: takes no bytes for {WRITE_TIMEOUT_S} s") from None
+                    raise TransportTimeout(
+                        f"{self.name}: the write blocked for {WRITE_TIMEOUT_S:g} s"
+                    ) from None
             except OSError as error:
                 raise self._gone(error.strerror) from error
 
     def drain(self) -> bytes:
-        """Take what was received already."""
+        """Return what was received already."""
         if self._descriptor < 0 or not self._readable(0.0):  # there is nothing, as good as always
             return b""
         taken = bytearray()
@@ -278,15 +286,15 @@ class DeviceTransport(Transport):
                 taken += data
         return bytes(taken)
 
-    def set_line(self, line: LineSettings) -> None:
-        """Take another speed and format; of a pty, the speed alone."""
-        set_line(self.name, of_pty(line) if self._pty else line, self._port)
-        if not self._pty:  # pyserial has just turned it off
-            check_parity(self._descriptor, line)
-        self.line = str(line)
+    def configure(self, settings: LineSettings) -> None:
+        """Set speed and format; of a pty, only the speed."""
+        configure_port(self.name, of_pty(settings) if self._pty else settings, self._port)
+        if not self._pty:  # pyserial has just switched it off
+            check_parity(self._descriptor, settings)
+        self.serial_settings = str(settings)
 
     def set_dtr(self, *, on: bool) -> bool:
-        """Switch DTR; False if the port says that it has none."""
+        """Switch DTR; returns False if the port has none."""
         return set_dtr(self._port, on=on)
 
     def close(self) -> None:

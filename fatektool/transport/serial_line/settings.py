@@ -1,4 +1,4 @@
-"""Speed, format, parity check and wires of a serial port that pyserial has open."""
+"""Speed, format, parity check and DTR of a serial port that pyserial has opened."""
 
 from __future__ import annotations
 
@@ -9,43 +9,43 @@ from fatektool.transport.serial_line.errors import open_error
 
 PTY_FORMAT: Final = "8N1"
 PORT_ERRORS: Final = (OSError, ValueError, NotImplementedError)
-"""What pyserial raises: SerialException is an OSError, and the last is its word for what a system lacks."""
+"""The errors of pyserial: SerialException is an OSError; the last is for what a system does not have."""
 
 
-def of_pty(line: LineSettings) -> LineSettings:
-    """What a pseudo terminal takes: the speed alone."""
-    return LineSettings(line.baud, PTY_FORMAT)
+def of_pty(settings: LineSettings) -> LineSettings:
+    """The settings of a pseudo terminal: only the speed is used."""
+    return LineSettings(settings.baud, PTY_FORMAT)
 
 
-def set_line(target: str, line: LineSettings, port: Any) -> None:
-    """Another speed and format for an open port.
+def configure_port(target: str, settings: LineSettings, port: Any) -> None:
+    """Set speed and format of an open port.
 
     Raises:
-        LineError: it does not take these.
+        LineError: it does not have these.
     """
     try:
         port.apply_settings(
             {
-                "baudrate": line.baud,
-                "bytesize": line.data_bits,
-                "parity": line.parity,
-                "stopbits": line.stop_bits,
+                "baudrate": settings.baud,
+                "bytesize": settings.data_bits,
+                "parity": settings.parity,
+                "stopbits": settings.stop_bits,
             }
         )
     except PORT_ERRORS as error:
-        raise open_error(target, line, error) from error
+        raise open_error(target, settings, error) from error
     except Exception as error:  # as when opening
         if type(error).__name__ != "error" and "://" not in target:
             raise
-        raise open_error(target, line, error) from error
+        raise open_error(target, settings, error) from error
 
 
-def check_parity(descriptor: int, line: LineSettings) -> bool:
-    """Have the driver check the parity of what it receives, or leave that if the line has none.
+def check_parity(descriptor: int, settings: LineSettings) -> bool:
+    """Have the driver check the parity of received bytes; no check if the format has no parity.
 
     Args:
         descriptor: of an open port.
-        line: its speed and format.
+        settings: its speed and format.
 
     Returns:
         False if the driver cannot.
@@ -53,20 +53,20 @@ def check_parity(descriptor: int, line: LineSettings) -> bool:
     import termios
 
     try:
-        settings = termios.tcgetattr(descriptor)
-        settings[0] &= ~(termios.INPCK | termios.IGNPAR | termios.PARMRK)
-        if line.parity != "N":
-            settings[0] |= termios.INPCK
-        termios.tcsetattr(descriptor, termios.TCSANOW, settings)
+        attributes = termios.tcgetattr(descriptor)
+        attributes[0] &= ~(termios.INPCK | termios.IGNPAR | termios.PARMRK)
+        if settings.parity != "N":
+            attributes[0] |= termios.INPCK
+        termios.tcsetattr(descriptor, termios.TCSANOW, attributes)
     except termios.error:
         return False
     return True
 
 
 def set_dtr(port: Any, *, on: bool) -> bool:
-    """Switch DTR; False if the port says that it has none."""
+    """Switch DTR; returns False if the port has none."""
     try:
         port.dtr = on
-    except (OSError, ValueError, TypeError, AttributeError):  # a pty has none; a closed port has none either
+    except (OSError, ValueError, TypeError, AttributeError):  # a pty or a closed port has none
         return False
     return True

@@ -1,13 +1,14 @@
-"""Where a URL of pyserial leads: to a device of this computer, or to a port of another.
+"""The device or the gateway of a URL of pyserial.
 
 ::
 
-    rfc2217://HOST:PORT, socket://HOST:PORT     a port of another computer
-    spy://DEVICE?…, alt://DEVICE?…              a device of this one
-    hwgrep://REGEX&…                            the first device whose description it matches
-    loop://                                     nowhere: what is written is read
+    rfc2217://HOST:PORT, socket://HOST:PORT     a gateway
+    spy://DEVICE?…, alt://DEVICE?…              a device of this computer
+    hwgrep://REGEX&…                            the first device whose description matches
+    loop://                                     none: every byte written is received
 
-Two targets that lead to the same place are one line: they share its lock, and are not asked at once.
+Two targets with the same device or gateway are one line: they have one lock, and are used one after the
+other.
 """
 
 from __future__ import annotations
@@ -29,10 +30,10 @@ _SEARCHES: Final = "expected hwgrep://REGEX, such as 'hwgrep://FT232' or 'hwgrep
 
 
 def require_place(target: str) -> None:
-    """Check that a URL names what it must name: host and port, a device, what to search for.
+    """Check that a URL has what its scheme needs: host and port, a device, or a text to search for.
 
     Raises:
-        UsageError: it does not.
+        UsageError: it is missing.
     """
     scheme, _, rest = target.partition("://")
     scheme = f"{scheme.lower()}://"
@@ -45,10 +46,10 @@ def require_place(target: str) -> None:
 
 
 def host_of(target: str) -> tuple[str, int] | None:
-    """Host and port of a URL that leads to another computer; None for any other target.
+    """Host and port of a URL with a gateway; None for any other target.
 
     Raises:
-        UsageError: it names no host or no port.
+        UsageError: host or port is missing.
     """
     if not target.lower().startswith(NETWORK):
         return None
@@ -61,17 +62,17 @@ def host_of(target: str) -> tuple[str, int] | None:
         scheme = target.partition("://")[0].lower()
         raise UsageError(
             f"{target}: expected {scheme}://HOST:PORT",
-            hint=f"such as {scheme}://192.168.2.3:4001; the port is the gateway's",
+            hint=f"such as {scheme}://192.168.2.3:4001, with the port of the gateway",
         )
     return host, port
 
 
 def device_of(target: str) -> str | None:
-    """The device behind a target; None if that leads to none.
+    """The device of a target; None if it has none.
 
     Raises:
         LineError: a search that finds none.
-        UsageError: a search that is none.
+        UsageError: an invalid search.
     """
     if "://" not in target:
         return target
@@ -82,10 +83,10 @@ def device_of(target: str) -> str | None:
     return None
 
 
-def line_of(target: str) -> str:
-    """What a serial target's line is called: the same for all names of one device or URL, host aside.
+def line_name(target: str) -> str:
+    """The name of a serial target's line: the same for all names of one device or URL without a host.
 
-    A search that finds nothing, or finds it later, stands for itself.
+    A search that finds nothing, or finds it later, is its own name.
     """
     try:
         device = device_of(target)
@@ -93,11 +94,11 @@ def line_of(target: str) -> str:
         device = None
     if device is None:
         return target.upper()
-    return device.upper() if os.name == "nt" else os.path.realpath(device)  # COM3 is a name, not a path
+    return device.upper() if os.name == "nt" else os.path.realpath(device)  # COM3 is not a path
 
 
 def _found(target: str) -> str:
-    """The device that pyserial's own search finds, as its handler reads the URL."""
+    """The device that pyserial's own search finds."""
     from serial import SerialException
     from serial.urlhandler.protocol_hwgrep import Serial
 
@@ -107,6 +108,6 @@ def _found(target: str) -> str:
         raise UsageError(f"{target}: invalid search: {error}", hint=_SEARCHES) from error
     except SerialException as error:
         raise LineError(
-            f"{target}: no serial port here has such a name or description",
-            hint="'fatektool ports' lists those here; is the adapter plugged in?",
+            f"{target}: no serial port has such a name or description",
+            hint="check that the adapter is plugged in; 'fatektool ports' lists the serial ports",
         ) from error

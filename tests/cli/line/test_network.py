@@ -105,7 +105,7 @@ def test_the_port_is_in_use(answer_port: int, cli: Cli) -> None:
         taken.bind(("", answer_port))
         done = cli("scan", "--network", "127.0.0.1")
     assert done.code == 3
-    assert f"UDP port {answer_port} of this computer cannot be had" in done.err
+    assert f"UDP port {answer_port} of this computer cannot be used" in done.err
 
 
 @pytest.mark.parametrize(

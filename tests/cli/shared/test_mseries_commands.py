@@ -177,7 +177,7 @@ def test_frames_typed_in(cli: Cli) -> None:
 def test_the_port_must_be_named(target: str, cli: Cli) -> None:
     refused = cli("status", "-p", target, "--protocol", "mseries")
     assert refused.code == 2
-    assert "expected a port, as this protocol has no usual one" in one_line(refused.err)
+    assert "expected a port, because this protocol has no default port" in one_line(refused.err)
     assert f"{target.rstrip('/')}:PORT" in refused.err
 
 

@@ -166,10 +166,10 @@ REFUSALS = [
     (2, "--replay nowhere.ndjson", "cannot read nowhere.ndjson"),
     (5, "--replay empty.ndjson", "empty.ndjson: no facon request in the recording"),
     (5, "--replay good.ndjson --protocol mseries", "good.ndjson: no mseries request in the recording"),
-    (5, "--replay damaged.ndjson", "damaged.ndjson: line 2: no trace record"),
+    (5, "--replay damaged.ndjson", "damaged.ndjson: line 2: not a trace record"),
     (5, "--replay month.ndjson", "month.ndjson: line 2: expected a time such as"),
     (5, "--replay cut.pcap", "cut.pcap: packet 1 is cut off"),
-    (5, "--replay ethernet.pcap", "ethernet.pcap: no trace of this program"),
+    (5, "--replay ethernet.pcap", "ethernet.pcap: not a trace of this program"),
 ]
 
 

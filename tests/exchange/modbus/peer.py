@@ -57,7 +57,7 @@ def linked(
     numbers = itertools.count()
     transport = MemoryTransport(peer)
     if serial:
-        transport.line = str(LINE)
+        transport.serial_settings = str(LINE)
     return Link(
         transport,
         codec,

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from fatektool.address import PlcAddress
 from fatektool.errors import DeadlinePassed, LineError, TransportTimeout
-from fatektool.jobs.fleet.lines import addresses_of, line_of
+from fatektool.jobs.fleet.lines import addresses_of, line_name
 from fatektool.jobs.fleet.rounds import Fleet, Task, Turn
 from fatektool.transport.base import Transport
 from fatektool.transport.limit import Limit, LimitedTransport
@@ -129,7 +129,7 @@ def test_a_limit_that_is_over_is_what_is_said() -> None:
         list(fleet.ended())
     error = fleet.turns[0].error
     assert isinstance(error, DeadlinePassed)
-    assert error.message == "given up, its limit of 0.01 s is over (no answer from station 1)"
+    assert error.message == "stopped at the time limit of 0.01 s (no answer from station 1)"
 
 
 def test_stop_ends_all_and_begins_no_other() -> None:
@@ -190,14 +190,14 @@ def test_looking_on() -> None:
 )
 def test_which_plcs_share_a_line(one: str, other: str, *, same: bool) -> None:
     addresses = {"gate": "10.0.0.9", "Gate": "10.0.0.9"}
-    a, b = (line_of(PlcAddress(target), name, addresses) for target, name in ((one, "a"), (other, "b")))
+    a, b = (line_name(PlcAddress(target), name, addresses) for target, name in ((one, "a"), (other, "b")))
     assert (a == b) is same
 
 
 def test_two_names_of_one_device(tmp_path: Path) -> None:
     (tmp_path / "by-id").symlink_to("/dev/null")
     by_id = PlcAddress(str(tmp_path / "by-id"))
-    assert line_of(by_id, "a", {}) == line_of(PlcAddress("/dev/null"), "b", {})
+    assert line_name(by_id, "a", {}) == line_name(PlcAddress("/dev/null"), "b", {})
 
 
 def test_names_of_hosts_are_looked_up() -> None:
@@ -242,7 +242,7 @@ def test_a_transport_ends_with_its_limit() -> None:
             limited.read(1, 10.0)
         reads += 1
     assert (reads, inner.now) == (4, 1.0)  # a look each quarter of a second
-    with pytest.raises(DeadlinePassed, match=r"its limit of 1 s is over; .*--deadline"):
+    with pytest.raises(DeadlinePassed, match=r"the time limit of 1 s; .*--deadline"):
         limited.read(1, 10.0)
     with pytest.raises(DeadlinePassed):
         limited.write(b"b")

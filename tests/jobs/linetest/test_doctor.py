@@ -91,7 +91,7 @@ def test_what_other_plcs_hold_there_is_no_finding() -> None:
 
 def doctored(line: Line, station: int) -> Plc:
     transport = Adjustable(line)
-    transport.line = "9600 7E1"
+    transport.serial_settings = "9600 7E1"
     line.set_to = 9600
     return Plc(Link(transport, FACON, station, LineSettings()), "line")
 
@@ -148,7 +148,7 @@ def test_the_time_out_that_is_recommended_is_proven_by_a_try(delay_ms: int) -> N
 
 def test_a_plc_that_is_late_is_not_looked_for_elsewhere() -> None:
     bench = simulated(baud=9600, scan_ms=900)
-    bench.plc.link.transport.line = "9600 7E1"
+    bench.plc.link.transport.serial_settings = "9600 7E1"
     assert examine(bench.plc).searched is None
 
 

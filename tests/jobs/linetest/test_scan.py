@@ -58,8 +58,8 @@ class Adjustable(MemoryTransport):
         super().__init__(line)
         self.peer = line
 
-    def set_line(self, line: LineSettings) -> None:
-        self.peer.set_to = line.baud
+    def configure(self, settings: LineSettings) -> None:
+        self.peer.set_to = settings.baud
 
 
 def look(
@@ -260,10 +260,10 @@ def test_a_late_answer_is_told_with_its_time(stations: tuple[int, ...]) -> None:
 class Picky(Adjustable):
     """An adapter that has not every speed."""
 
-    def set_line(self, line: LineSettings) -> None:
-        if line.baud > 115200:
-            raise LineError(f"{self.name}: does not take {line}")
-        super().set_line(line)
+    def configure(self, settings: LineSettings) -> None:
+        if settings.baud > 115200:
+            raise LineError(f"{self.name}: does not take {settings}")
+        super().configure(settings)
 
 
 def test_a_speed_that_the_port_does_not_take_is_left_out_and_told() -> None:

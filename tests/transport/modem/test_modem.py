@@ -163,10 +163,10 @@ def test_what_a_line_means(line: str, result: Result | None) -> None:
     ("outcome", "tries", "advice"),
     [
         ("BUSY", 3, "call later"),
-        ("NO CARRIER", 3, "is the number right"),
-        ("NO ANSWER", 3, "does it answer by itself"),
-        ("NO DIALTONE", 1, "telephone line plugged in"),
-        ("ERROR", 1, "does not take the number"),
+        ("NO CARRIER", 3, "check the number"),
+        ("NO ANSWER", 3, "that it answers calls"),
+        ("NO DIALTONE", 1, "telephone line is plugged in"),
+        ("ERROR", 1, "does not accept the number"),
         ("OK", 1, "did not call"),
     ],
 )
@@ -175,7 +175,7 @@ def test_each_outcome_has_its_own_words(outcome: str, tries: int, advice: str, *
     error = no_connection(modem)
     count = "3 tries" if tries == 3 else "1 try"
     said = ", ".join([outcome] * tries)
-    assert error.message == f"/dev/ttyUSB0: no connection to {NUMBER} in {count}: the modem said {said}"
+    assert error.message == f"/dev/ttyUSB0: no connection to {NUMBER} in {count}: the modem reported {said}"
     assert advice in (error.hint or "")
     assert error.details == {"result": outcome, "tries": tries}
     assert len(dialled(modem)) == tries
@@ -209,7 +209,10 @@ def test_the_third_try_may_find_a_connection() -> None:
 def test_tries_and_their_pause_are_the_callers() -> None:
     modem = ScriptedModem(["BUSY"])
     transport = ModemTransport(Port(modem), Call(NUMBER, tries=5, pause_s=0))
-    with transport, pytest.raises(LineError, match="5 tries: the modem said BUSY, BUSY, BUSY, BUSY, BUSY"):
+    with (
+        transport,
+        pytest.raises(LineError, match=r"5 tries: the modem reported BUSY(, BUSY){4}"),
+    ):
         transport.connect()
     assert transport.clock() < 1
 
@@ -232,15 +235,15 @@ def test_a_silent_modem_is_no_silent_call() -> None:
     modem = ScriptedModem(dead=True)
     error = no_connection(modem)
     assert error.message.startswith("/dev/ttyUSB0: no modem answers ATE0Q0V1 at ")
-    assert error.message.endswith("nothing heard")
-    assert "is the modem on" in (error.hint or "")
+    assert error.message.endswith("nothing received")
+    assert "check that the modem is on" in (error.hint or "")
 
 
 @pytest.mark.parametrize("said", [b"\xff\x00\x7f", b"ATE0Q0V1\r", b"\r\nHELLO\r\n" * 99])
 def test_what_is_no_modem(said: bytes) -> None:
     modem = ScriptedModem(echo=False, answers={"ATE0Q0V1": said})
     error = no_connection(modem)
-    assert "which is no result" in error.message
+    assert "which is not a result" in error.message
     assert len(error.message) < 250
     assert dialled(modem) == []
 
@@ -257,7 +260,7 @@ def test_a_modem_with_parity_is_understood() -> None:
 def test_an_init_that_the_modem_refuses(answer: str | bytes, said: str) -> None:
     modem = ScriptedModem(answers={"AT&Q9": answer})
     error = no_connection(modem, Call(NUMBER, init=("AT&Q9",)))
-    assert f"answers AT&Q9 with {said}" in error.message
+    assert f"AT&Q9 to the modem: expected OK, got {said}" in error.message
     assert "init=" in (error.hint or "")
     assert dialled(modem) == []
 
@@ -349,7 +352,7 @@ def test_a_modem_that_does_not_say_that_it_hung_up_is_told_of() -> None:
     transport.connect()
     modem.dead = True
     transport.close()
-    assert notes[-1] == "/dev/ttyUSB0: the modem does not say that it hung up"
+    assert notes[-1] == "/dev/ttyUSB0: the modem does not confirm that it hung up"
     assert f"to the modem: ATDT{NUMBER}" in notes
     assert "from the modem: 'CONNECT 9600'" in notes
 
@@ -380,7 +383,7 @@ def test_the_end_of_a_call_is_told_after_what_came_before_it(cut: int, most: int
         read_all(transport, most, heard)
     assert heard.startswith(b"0140")
     assert b"0140\r\nNO CARRIER\r".startswith(heard)
-    with pytest.raises(TransportClosed, match="run it again"):
+    with pytest.raises(TransportClosed, match="run again"):
         transport.write(b"y")
     assert transport.drain() == b""
     transport.close()
@@ -416,7 +419,7 @@ def test_words_of_a_plc_do_not_end_a_call() -> None:
 def test_a_call_has_no_speed_to_change_and_is_not_made_anew() -> None:
     modem = ScriptedModem()
     with called(modem) as transport:
-        transport.set_line(LineSettings(4800, "8N1"))
+        transport.configure(LineSettings(4800, "8N1"))
         transport.renew()
         assert modem.online
     assert len(dialled(modem)) == 1

@@ -26,7 +26,7 @@ def loopback_document(plc: Plc, result: LoopbackResult, findings: Iterable[Findi
     return {
         "schema": "fatektool.loopback/1",
         **(where(plc) if plan.raw is None else where(plc) | {"station": None, "protocol": "raw"}),
-        "line": plc.link.transport.line,
+        "line": plc.link.transport.serial_settings,
         "raw": None if plan.raw is None else _frame(plan.raw),
         "verdict": "fail" if result.faults else "pass",
         "ended": result.ended,
@@ -95,7 +95,7 @@ def doctor_document(plc: Plc, found: Examination) -> dict[str, Any]:
     return {
         "schema": "fatektool.doctor/1",
         **where(plc),
-        "line": plc.link.transport.line,
+        "line": plc.link.transport.serial_settings,
         "healthy": found.healthy,
         "findings": [finding_document(finding) for finding in found.findings],
         "status": None if found.brief is None else found.brief.flags.document(),

@@ -19,7 +19,7 @@ from fatektool.cli.shared.options import Seconds, voice_options
 from fatektool.errors import FatektoolError
 from fatektool.files.times import utc
 from fatektool.inventory.select import select
-from fatektool.jobs.fleet.lines import addresses_of, line_of
+from fatektool.jobs.fleet.lines import addresses_of, line_name
 from fatektool.jobs.fleet.rounds import Fleet, Task
 
 if TYPE_CHECKING:
@@ -144,7 +144,7 @@ def run_fleet(
     time_, began = utc(), time.monotonic()
     addresses = addresses_of(entry.address.target for entry in orders.entries)
     tasks = [
-        Task(entry.name, line_of(entry.address, entry.name, addresses), partial(work, entry))
+        Task(entry.name, line_name(entry.address, entry.name, addresses), partial(work, entry))
         for entry in orders.entries
     ]
     entries = {entry.name: entry for entry in orders.entries}

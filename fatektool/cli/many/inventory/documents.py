@@ -41,7 +41,7 @@ def _entry_document(entry: PlcEntry) -> dict[str, Any]:
     return {
         "name": entry.name,
         **{key: getattr(entry.address, key) for key in CHECKS},
-        "format": entry.address.line.format,
+        "format": entry.address.line_settings.format,
         "tags": list(entry.tags),
         "spec": None if entry.spec is None else str(entry.spec),
         "reference": None if entry.reference is None else str(entry.reference),

@@ -92,7 +92,7 @@ def test_a_plc_that_hangs_is_given_up(cli: Cli, plant: Hall, monkeypatch: pytest
     assert [plc["exit_code"] for plc in found.values()] == [0, 0, 0, 3, 3]
     told = found["deaf"]["document"]["error"]
     assert told["kind"] == "deadline_passed"
-    assert told["message"].startswith("given up, its limit of 5 s is over")
+    assert told["message"].startswith("stopped at the time limit of 5 s")
     behind = found["behind"]["document"]["error"]["kind"]  # asked after it, with a limit of its own
     assert behind in {"no_answer", "deadline_passed"}  # whichever of its two limits is noticed first
 
