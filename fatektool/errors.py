@@ -1,29 +1,29 @@
-"""Every error the library raises, each with the exit code of its class.
+"""All errors that the library raises, each with the exit code of its class.
 
 ::
 
-    FatektoolError                     70  a fault of fatektool itself
-    ├── UsageError                      2  a bad option or value, a refused question
-    │   ├── LineReadOnly                   a write over a line that may only be read
-    │   └── FileExists                     a file of this name is there, and is kept
-    ├── LineError                       3  no or no usable answer, port not there or in use
+    FatektoolError                     70  an error in fatektool itself
+    ├── UsageError                      2  an invalid option or value; nothing was sent
+    │   ├── LineReadOnly                   a write on a read-only line
+    │   └── FileExists                     the file exists already; it is kept
+    ├── LineError                       3  no valid answer; port missing or in use
     │   ├── TransportError                 the medium failed
-    │   │   ├── TransportTimeout           nothing came in time (one read, not one exchange)
-    │   │   │   └── GatewayTimeout         a gateway says that it did not reach the PLC
-    │   │   └── TransportClosed            the other side or the cable is gone
-    │   ├── PortBusy                       another process holds the port
-    │   ├── FrameError                     bytes that are no frame
-    │   ├── NoAnswer                       an exchange found no answer, retries included
-    │   ├── DeadlinePassed                 the limit of time for this PLC is over
-    │   └── PushFailed                     a history did not reach the other repository; it is kept here
-    ├── PlcError                        4  the PLC is reached and will not or must not
+    │   │   ├── TransportTimeout           nothing received in time (one read, not one exchange)
+    │   │   │   └── GatewayTimeout         a gateway reports that it did not reach the PLC
+    │   │   └── TransportClosed            the connection or the device is lost
+    │   ├── PortBusy                       another process uses the port
+    │   ├── FrameError                     bytes that are not a frame
+    │   ├── NoAnswer                       no valid answer to a request and its retries
+    │   ├── DeadlinePassed                 the time limit for this PLC is over
+    │   └── PushFailed                     a history could not be sent to the other repository
+    ├── PlcError                        4  the PLC is reached, but refuses, or must not be asked
     │   ├── PlcRefused                     an error code in its answer
-    │   ├── PlcBusy                        it says that it is at work: to be asked again
-    │   └── PlcNotReady                    RUN where STOP is needed, ROM pack fitted
-    ├── DataError                       5  a file or program that does not hold
-    └── RestoreIncomplete               6  a write ended half way: the PLC holds neither old nor new
+    │   ├── PlcBusy                        the PLC is busy, also after retries
+    │   └── PlcNotReady                    for example in RUN where STOP is needed, or a ROM pack is fitted
+    ├── DataError                       5  an invalid file or program
+    └── RestoreIncomplete               6  a write stopped half way: the PLC has neither the old nor the new
 
-A message is one line that says what, where, expected, got and the next step. ``details`` holds the
+A message is one line with what, where, expected, got and the next step. ``details`` holds the
 same as values for JSON, and ``kind`` is the class's name in snake case.
 """
 
@@ -66,16 +66,16 @@ class FatektoolError(Exception):
 
 
 class UsageError(FatektoolError):
-    """What was asked cannot be asked: nothing was sent."""
+    """An invalid option, value or request: nothing was sent."""
 
     exit_code = 2
 
 
 class LineReadOnly(UsageError):
-    """A write over a line that may only be read.
+    """A write on a read-only line.
 
     Args:
-        what: wanted to write.
+        what: the request or command that writes.
     """
 
     def __init__(self, what: str) -> None:
@@ -86,28 +86,28 @@ class LineReadOnly(UsageError):
 
 
 class FileExists(UsageError):
-    """A file of this name is there already, and is kept."""
+    """The file exists already; it is kept."""
 
 
 class LineError(FatektoolError):
-    """No or no usable answer; or the port cannot be had."""
+    """No valid answer; or the port is missing or in use."""
 
     exit_code = 3
 
 
 class TransportError(LineError):
-    """The medium failed: an error of the operating system, in the project's words."""
+    """The medium failed: an error of the operating system."""
 
 
 class TransportTimeout(TransportError):
-    """Not one byte came within the time that a single read was given."""
+    """Not one byte was received within the time of one read."""
 
 
 class GatewayTimeout(TransportTimeout):
-    """A gateway says that no answer came from behind it.
+    """A gateway reports that it got no answer from the PLC.
 
     Args:
-        message: what it says.
+        message: what it reports.
         handed_on: False if the request did not leave the gateway.
     """
 
@@ -117,13 +117,13 @@ class GatewayTimeout(TransportTimeout):
 
 
 class TransportClosed(TransportError):
-    """The connection or the device is gone.
+    """The connection or the device is lost.
 
     Args:
         message: what happened.
         hint: the next step.
-        may_return: True for a connection that was refused, reset or closed by the other side, which may take
-            the next one in a moment.
+        may_return: True for a connection that was refused, reset or closed by the other side, which may accept
+            the next one soon.
     """
 
     def __init__(self, message: str, *, hint: str | None = None, may_return: bool = False) -> None:
@@ -136,12 +136,12 @@ class PortBusy(LineError):
 
 
 class FrameError(LineError):
-    """Bytes that are no frame of the protocol.
+    """Bytes that are not a frame of the protocol.
 
     Args:
         message: what is wrong with them.
         raw: the bytes that were dropped.
-        checksum: True if all but the checksum of a whole frame is right in form.
+        checksum: True for a complete frame in which only the checksum is wrong.
     """
 
     def __init__(self, message: str, *, raw: bytes = b"", checksum: bool = False) -> None:
@@ -151,19 +151,19 @@ class FrameError(LineError):
 
 
 class NoAnswer(LineError):
-    """One exchange and its retries found no answer to trust."""
+    """No valid answer to a request and its retries."""
 
 
 class DeadlinePassed(LineError):
-    """The overall limit of time for this PLC is over."""
+    """The time limit for this PLC is over."""
 
 
 class PushFailed(LineError):
-    """A history did not reach another repository. What was recorded here stays recorded."""
+    """A history could not be sent to another repository. What was recorded here is kept."""
 
 
 class PlcError(FatektoolError):
-    """The PLC is reached, and will not or must not do what was asked."""
+    """The PLC is reached, but refuses the request, or must not do it now."""
 
     exit_code = 4
 
@@ -184,13 +184,13 @@ class PlcRefused(PlcError):
 
 
 class PlcBusy(PlcError):
-    """The PLC says that it is at work. Not for good: it is asked again, and this is raised if it stays so.
+    """The PLC reports that it is busy. The request is repeated; this is raised if the PLC stays busy.
 
     Args:
-        message: what was asked and what the PLC said.
+        message: what was asked and what the PLC answered.
         code: the exception code.
         command: the command's code.
-        accepted: True if it will do what it was asked, and has not done it yet.
+        accepted: True if the PLC accepted the request and has not completed it yet.
     """
 
     def __init__(
@@ -201,23 +201,23 @@ class PlcBusy(PlcError):
 
 
 class PlcNotReady(PlcError):
-    """The PLC is in a state in which this must not be done."""
+    """This must not be done in the present state of the PLC."""
 
 
 class DataError(FatektoolError):
-    """A file, program or header that does not hold, or does not fit this PLC."""
+    """A file, program or header that is invalid, or does not fit this PLC."""
 
     exit_code = 5
 
 
 class RestoreIncomplete(FatektoolError):
-    """A write that can be undone ended half way: the PLC holds neither what it held nor what it should.
+    """A write stopped half way: the PLC has neither its previous nor the new values or program.
 
     Attributes:
-        headline: what did not complete.
-        mode: the mode that the PLC is in now, and what must not be done; empty if it was left alone.
-        states: what the PLC holds: the place, such as ``page 0-3``, and what is there.
-        saved: the file with what the PLC held before; None if it was not saved.
+        headline: what was not completed.
+        mode: the present mode of the PLC, and what must not be done; empty if it was not changed.
+        states: the contents of the PLC: the range, such as ``page 0-3``, and its state.
+        saved: the file with what the PLC had before; None if it was not saved.
     """
 
     exit_code = 6
@@ -228,4 +228,4 @@ class RestoreIncomplete(FatektoolError):
 
 
 class FileWarning(UserWarning):
-    """A file is written and whole, and something about it is not as it ought to be."""
+    """A file is written and complete, but something about it needs attention."""

@@ -1,11 +1,11 @@
-"""One try of one request: send it, then read until its answer is there or its time is over.
+"""One try of one request: send it, then read until its answer is received or its time is over.
 
-A two-wire line may echo every byte. The echo of most requests can be told from any answer by its content;
-that of 4E, STOP and RUN cannot. So before the first of those, another request shows whether this line echoes;
-from then on the first copy is the echo and the second the answer.
+A two-wire line may echo every byte. The echo of most requests differs from every answer; the echo of 4E,
+STOP and RUN does not. So before the first of those, another request shows whether this line echoes; from then
+on the first copy is the echo and the second the answer.
 
-Deadline = wire time of request and longest answer at this baud + the PLC's time. A late answer that comes in
-the meantime extends it: this PLC needs more time.
+Deadline = wire time of request and longest answer at this baud + the PLC's time. A late answer that is received in
+the meantime extends it, because this PLC needs more time.
 """
 
 from __future__ import annotations
@@ -55,16 +55,16 @@ class Attempts:
         self._state = state
         self._receiver = receiver
         self._sender = sender
-        self._silent = 0  # tries in a row for which nothing came
+        self._silent = 0  # tries in a row for which nothing was received
         self._received = bytearray()  # in this try, its beginning
 
     def learn_echo(self) -> None:
-        """Send a request whose echo cannot be taken for its answer, to learn whether the line echoes.
+        """Send a request whose echo differs from its answer, to learn whether the line echoes.
 
-        A refusal is an answer too: the PLC is there, and it is no echo.
+        A refusal is an answer too: the PLC is there, and a refusal is not an echo.
 
         Raises:
-            LineError: nothing was learned by this try; the PLC may not even have answered.
+            LineError: the result is still unknown after this try.
         """
         state, receiver = self._state, self._receiver
         with contextlib.suppress(PlcRefused, PlcBusy):
@@ -72,12 +72,12 @@ class Attempts:
         if state.echoes is None:
             receiver.needs_fence = True
             receiver.instead = receiver.instead or "more than one answer"
-            raise FrameError("more than the answer came: it is not known whether the line echoes")
+            raise FrameError("more than the answer was received: it is not known whether the line echoes")
 
     def once(self, request: Request[A]) -> A:
         """Send a request once and wait for its answer.
 
-        The caller must know whether the line echoes before it sends what its own echo would answer.
+        Before a request whose echo equals its answer, the caller must know whether the line echoes.
 
         Raises:
             TransportTimeout, TransportClosed, FrameError: this try has failed, and a fence is needed.
@@ -107,7 +107,7 @@ class Attempts:
             raise
         except (PlcRefused, PlcBusy):
             raise
-        except BaseException:  # an interrupt too: the answer may still come
+        except BaseException:  # an interrupt too: the answer may still be received
             receiver.note_no_answer()
             raise
         finally:
@@ -117,7 +117,7 @@ class Attempts:
         """Wait for a PLC that is busy, longer each time.
 
         Args:
-            attempt: how often it was waited for already.
+            attempt: the number of waits before this one.
         """
         state = self._state
         if attempt < state.retries:
@@ -125,12 +125,12 @@ class Attempts:
             self._receiver.listen_until(state.transport.clock() + pause_s)
 
     def _renew_if_silent(self) -> None:
-        """Connect anew after a long silence, unless the PLC is late: its answer comes on this connection."""
+        """Connect again after a long silence, unless the PLC is late: its answer comes on this connection."""
         if self._silent < _SILENT_TRIES_BEFORE_RENEWAL:
             return
         self._silent = 0
         transport = self._state.transport
-        if "://" in transport.name:  # what else has no connection to lose: a late answer is received later
+        if "://" in transport.name:  # other media have no connection: a late answer is received later
             with contextlib.suppress(TransportClosed):
                 self._receiver.listen_for_late()
         if not self._state.late_s:
@@ -179,7 +179,7 @@ class Attempts:
     def _next_frame(self, size: int, from_s: float) -> Frame:
         """The next whole frame; bad bytes before it are dropped and counted.
 
-        What has come in time counts, though a busy computer may have kept this process from looking.
+        Bytes that arrived in time are accepted, even if a busy computer delayed this process.
 
         Args:
             size: of the answer, in bytes.
@@ -192,7 +192,7 @@ class Attempts:
                 frame = receiver.decoder.next_frame()
             except FrameError as error:
                 receiver.note_bad_bytes(error)
-                if error.checksum and len(error.raw) == size:  # the answer, damaged: no use in waiting
+                if error.checksum and len(error.raw) == size:  # the answer, damaged: waiting is useless
                     raise
                 continue
             if frame is not None:
@@ -222,7 +222,7 @@ class Attempts:
 
 
 def _like_echo(beside: bytes, raw: bytes) -> bool:
-    """True if the bytes could hold an echo of the request, even a damaged one: half of it in its place."""
-    if len(beside) < len(raw):  # too little even for that
+    """True if the bytes may contain an echo of the request, even a damaged one: half of it in its place."""
+    if len(beside) < len(raw):  # too few bytes even for that
         return False
     return any(2 * sum(map(eq, beside[at:], raw)) >= len(raw) for at in range(len(beside)))

@@ -1,17 +1,18 @@
-"""Many requests of one kind, none of which gets the answer to another: reads, and writes.
+"""Many requests of one kind, reads or writes, so that none gets the answer to another.
 
-An answer that came twice could pass for that of the next request, and shift all that follow by one. So
-answers count as proven only behind a fence:
+An answer that is received twice could be taken for that of the next request, and shift all that follow by one.
+So answers count as proven only after a fence:
 
-- Something came that nobody had asked for: what was read since the last fence is read again, each behind a
-  fence of its own, as the first answer behind a fence is the right one.
-- Something else went wrong (a time-out, noise, a frame of another station): this may have been the extra
-  answer, damaged, and the answers before it may be shifted. A few of them show it: the one in whose exchange
-  it was, the one before, and the last that differs from the one behind it. These are read again.
-- At the end a fence is sent, with the same check if anything unexpected comes before its answer.
+- After unsolicited input, everything that was read since the last fence is read again, each request after a
+  fence of its own, because the first answer after a fence is the right one.
+- Another error (a time-out, noise, a frame of another station) may have been the extra answer, damaged, and
+  the answers before it may be shifted. A few of them show it: the one in whose exchange the error was, the one
+  before, and the last that differs from the one after it. These are read again.
+- At the end a fence is sent, with the same check if anything unexpected is received before its answer.
 
-On a clean line all this costs one fence, and nothing where answers carry the number of their request. It
-cannot see an answer that came twice with the next one lost, which leaves no trace: a second pass finds that.
+On a clean line this costs one fence, and nothing if answers carry the number of their request. One case is
+not detected, because nothing shows it: an answer received twice, with the next one lost. A second pass of reads
+finds that.
 """
 
 from __future__ import annotations
@@ -39,10 +40,10 @@ def read_all(
     Args:
         link: the link.
         requests: reads.
-        on_answer: is called with the number of answers so far.
+        on_answer: gets the number of answers so far.
 
     Raises:
-        NoAnswer: one of them found no answer to trust.
+        NoAnswer: no valid answer to one of them.
         PlcRefused: one of them was refused.
     """
     answers, refusal = read_until_refused(link, requests, on_answer)
@@ -62,15 +63,15 @@ def read_until_refused(
     Args:
         link: the link.
         requests: reads.
-        on_answer: is called with the number of answers so far.
-        more: adds a read to ``requests``; False if there is none. It is called while the line is busy, for a
-            plan that is made meanwhile.
+        on_answer: gets the number of answers so far.
+        more: adds a read to ``requests``; returns False if there is none. It is called while the line is
+            busy, for a plan that is made meanwhile.
 
     Returns:
-        The answers in order, and the refusal of the request behind them; None if none was refused.
+        The answers in order, and the refusal of the request after them; None if none was refused.
 
     Raises:
-        NoAnswer: one of them found no answer to trust.
+        NoAnswer: no valid answer to one of them.
     """
     batch = _Batch(link, requests, on_answer)
     refusal: PlcRefused | None = None
@@ -86,22 +87,22 @@ def read_until_refused(
     if batch.answers and len(requests) > 1:
         try:
             batch.prove_last()
-        except PlcRefused as error:  # what was answered before is refused now: nothing is proven
+        except PlcRefused as error:  # a request that was answered before is refused now: nothing is proven
             return [], error
     return batch.answers, refusal
 
 
 def proven(link: Link, work: Callable[[], B], again: Callable[[], B]) -> B:
-    """Do work in which each request depends on the answers before.
+    """Do work in which each request depends on the answers before it.
 
     Args:
         link: the link.
         work: sends requests and returns what it found.
-        again: the same, each of its reads behind a fence (``Link.fence``) of its own. It is done if something
-            unexpected came, as an answer may then have been that of another request.
+        again: the same, each of its reads after a fence (``Link.fence``) of its own. It is called if something
+            unexpected was received, because an answer may then have been that of another request.
 
     Raises:
-        NoAnswer: there was no answer to trust.
+        NoAnswer: no valid answer.
         PlcRefused: the PLC refuses a fence that it answered before.
     """
     before = link.disturbances[:2]
@@ -120,10 +121,10 @@ def write_all(
     Args:
         link: the link.
         requests: writes.
-        on_answer: is called with the number of acknowledged writes so far.
+        on_answer: gets the number of acknowledged writes so far.
 
     Raises:
-        LineError: the write behind those found no answer to trust; it may have been made.
+        LineError: no valid answer to the write after those; it may have been made.
         PlcRefused: that write was refused.
         LineReadOnly: the line is read-only.
     """
@@ -153,17 +154,17 @@ class _Batch(Generic[A]):
         self._requests = requests
         self._on_answer = on_answer
         self._proven = 0
-        self._disturbances = link.disturbances  # when the last answer was taken
+        self._disturbances = link.disturbances  # when the last answer was accepted
         self.answers: list[A] = []
 
     def take(self, answer: A) -> None:
-        """Take an answer that came while nothing unexpected did."""
+        """Keep an answer that was received while nothing unexpected was."""
         self.answers.append(answer)
         if self._on_answer is not None:
             self._on_answer(len(self.answers))
 
     def ask(self) -> None:
-        """Send the next request by itself, with retries, and look whether anything unexpected came."""
+        """Send the next request by itself, with retries, and check whether anything unexpected was received."""
         place = len(self.answers)
         self.take(self._link.ask(self._requests[place]))
         if self._link.disturbances != self._disturbances:
@@ -176,7 +177,7 @@ class _Batch(Generic[A]):
             self._disturbances = self._link.disturbances
 
     def prove_last(self) -> None:
-        """Prove what is not proven yet."""
+        """Prove the answers that are not proven yet."""
         link = self._link
         unsolicited, trouble, _ = self._disturbances
         passed = link.fences.pass_last()
@@ -190,7 +191,7 @@ class _Batch(Generic[A]):
 
         Args:
             end: the place.
-            suspects: the answer in whose exchange the trouble was, unless a fence stood before it.
+            suspects: the answer in whose exchange the error was, unless a fence was sent before it.
         """
         unsolicited = self._link.unsolicited
         places = range(self._proven, end)
@@ -205,7 +206,7 @@ class _Batch(Generic[A]):
         self._proven = end
 
     def _read_again(self, end: int) -> None:
-        """Read the answers before a place that are not proven again, each behind a fence."""
+        """Read the unproven answers before a place again, each after a fence."""
         for place in range(self._proven, end):
             self.answers[place] = self._ask_behind_fence(place)
         self._proven = end

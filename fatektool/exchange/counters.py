@@ -1,4 +1,4 @@
-"""What was sent and received on a line so far, counted."""
+"""Counts of what was sent and received on a line."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(slots=True)
 class Counters:
-    """What was sent and received on a line so far."""
+    """Counts of what was sent and received on a line."""
 
     exchanges: int = 0
     writes: int = 0  # requests that write, sent or about to be sent
@@ -21,7 +21,7 @@ class Counters:
 
     @property
     def trouble(self) -> int:
-        """How many errors there were; 0 on a clean line."""
+        """The number of errors; 0 on a clean line."""
         return self.timeouts + self.checksum_errors + self.garbled + self.strays
 
     def __str__(self) -> str:

@@ -1,10 +1,10 @@
-"""Fences: behind one, no answer to an earlier request can come any more.
+"""Fences: after one, no answer to an earlier request can be received any more.
 
-A fence is a request whose answer no other request can have had; the codec knows one. FACON has the loopback
-(4E), which returns a fresh nonce. All that comes before that answer is dropped, and only the exact nonce
-counts: the answer to an older fence does not. A protocol without such a request reads a length that nothing
-else had. Where no length is left, or it is not known what was asked before, silence must do: for as long as a
-PLC may take, nothing must be received. So it is with a PLC that refuses the fence.
+A fence is a request whose answer differs from the answer to every other request. FACON has the loopback (4E),
+which returns a new nonce. Everything received before that answer is dropped, and only the exact nonce counts,
+so the answer to an older fence does not. A protocol without such a request reads a length that no other request
+had. If no length is left, or the earlier requests are not known, or the PLC refuses the fence, then silence is
+used instead: nothing must be received for as long as a PLC may take.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ class Fences:
         receiver: its input.
         sender: its output.
         attempts: its tries.
-        nonces: gives nonces, never the same twice.
-        note: is told of a PLC that answers no fence.
+        nonces: returns nonces, never the same twice.
+        note: gets a message if the PLC answers no fence.
     """
 
     def __init__(
@@ -55,15 +55,15 @@ class Fences:
         self._attempts = attempts
         self._nonces = nonces
         self._note = note
-        self._unknown_before = False  # True if it is not known what was asked before
+        self._unknown_before = False  # True if the earlier requests are not known
         self._command: int = Command.LOOPBACK
 
     def assume_outstanding_answer(self) -> None:
-        """An answer to an earlier request may come; to which request is not known."""
+        """An answer to an earlier, unknown request may be received."""
         self._receiver.needs_fence = self._unknown_before = True
 
     def change_station(self, station: int) -> None:
-        """Ask another station from now on, on the same line.
+        """Send requests to another station from now on, on the same line.
 
         Raises:
             UsageError: no PLC can have this station.
@@ -75,28 +75,28 @@ class Fences:
             self.assume_outstanding_answer()
 
     def pass_one(self, before: Request[Any] | None) -> None:
-        """Make sure that no answer to an earlier request can come any more.
+        """Make sure that no answer to an earlier request can be received any more.
 
         Args:
-            before: what is asked next, if that is known: the fence's answer must not pass for its answer.
+            before: the next request, if known: the fence's answer must differ from its answer.
 
         Raises:
             NoAnswer: the PLC does not answer the fence.
             PlcRefused: it refuses it.
         """
         if self._state.numbered:
-            self._receiver.needs_fence = False  # a late answer may still come, and shows that the PLC is slow
+            self._receiver.needs_fence = False  # a late answer may still be received, and shows that the PLC is slow
         elif not self._by_request(before):
             self._by_silence()
 
     def pass_last(self) -> bool:
-        """A fence behind the last of many requests.
+        """Send a fence after the last of many requests.
 
-        A PLC that never answered a fence is excused with a note: if nothing unexpected came before, only the
-        proof is missing, not the answers. If something did, silence must do.
+        If the PLC never answered a fence, there is only a note: if nothing unexpected was received before,
+        only the proof is missing, not the answers. If something was, silence is used instead.
 
         Returns:
-            True if it proves their answers.
+            True if the answers are proven.
 
         Raises:
             NoAnswer: the PLC answered a fence before, and does not answer this one.
@@ -119,15 +119,15 @@ class Fences:
             self._by_silence()
         if passed is None:
             return True
-        self._note("this PLC answers no loopback (4E): a late answer to an earlier request could pass")
+        self._note("this PLC does not answer the loopback (4E): late answers to earlier requests cannot be excluded")
         self._passed()
         return False
 
     def _by_request(self, before: Request[Any] | None) -> bool | None:
-        """Send fences until the answer to the last one comes.
+        """Send fences until the answer to the last one is received.
 
         Returns:
-            True if it came, False if it is refused, None if there is no such request.
+            True if it was received, False if it is refused, None if there is no such request.
 
         Raises:
             LineError: no answer.
@@ -156,7 +156,7 @@ class Fences:
                 if isinstance(fence, Loopback):
                     return False
                 receiver.needs_fence = True
-                failure = error  # of an earlier request: an error code does not name its request either
+                failure = error  # of an earlier request: an error code does not say which
                 continue
             except PlcBusy as error:
                 failure = error
@@ -171,7 +171,7 @@ class Fences:
         raise no_answer(state, receiver, fence, failure, effort)
 
     def _by_silence(self) -> None:
-        """Wait until nothing comes for as long as a PLC may take.
+        """Wait until nothing is received for as long as a PLC may take.
 
         Raises:
             LineError: the line is never silent.

@@ -1,33 +1,32 @@
-"""Requests to a PLC and their answers: deadlines, retries, and no answer taken for that of another request.
+"""Requests to a PLC and their answers: deadlines, retries, and the right answer for each request.
 
-Answers do not name their request: a 4F answer carries no page number, a 46 answer no register. So after a
-time-out the late answer to page 5 would pass for page 6. What prevents that:
+Answers do not identify their request: a 4F answer carries no page number, a 46 answer no register. So after a
+time-out, the late answer to page 5 could be taken for page 6. This is prevented as follows:
 
 - Input is dropped before each request.
-- When anything unexpected came (a time-out, noise, an answer that nobody asked for), a **fence** goes before
-  the next request: see ``fences``. Where answers repeat a number of their request (``Codec.numbers``), that
-  tells them apart, and none is needed.
+- After anything unexpected (a time-out, noise, an unsolicited answer), a **fence** is sent before the next
+  request: see ``fences``. If answers repeat a number of their request (``Codec.numbers``), no fence is needed.
 - A write whose answer was lost is read back before it is sent again.
 
-``unsolicited`` counts what could mean that an earlier answer was taken for another's. Whoever sends many
-requests of one kind sends a fence at the end and reads again what may be wrong: that is ``batch.read_all``.
+``unsolicited`` counts input after which an earlier answer may have been taken for another's. After many requests
+of one kind, a fence is sent, and what may be wrong is read again: that is ``batch.read_all``.
 
-A PLC whose answers come late gets more time, up to four times as much; one that is silent does not. One that
-says that it is busy is asked again, after growing pauses. What the link asks for itself (a fence, a read to
-learn whether the line echoes, a read-back) is never reported as what its caller asked: if that is refused,
-the answer that is wanted is looked for without it.
+A PLC whose answers are late gets more time, up to four times as much; a silent one does not. A busy PLC is
+asked again, after pauses that grow. If the PLC refuses a request of the link itself (a fence, a read to learn
+whether the line echoes, a read-back), that is not reported as an answer to the caller's request: the link goes
+on without it.
 
-Each part is a file, and knows only those above it::
+Each part is a file, and imports only those above it::
 
-    state         which PLC, how, what is known of it; counters, sent: values
-    outstanding   requests whose answers may still come, and how late answers come
-    receiver      input that is no answer
+    state         the PLC, the settings, what is known of the PLC; counters, sent: values
+    outstanding   requests whose answers may still be received, and how late answers are
+    receiver      input that is not an answer
     sender        output
-    attempts      one try: send, read until the answer is there or its time is over
+    attempts      one try: send, read until the answer is received or its time is over
     no_answer     the error when there is none
-    fences        behind one, no earlier answer can come
-    link          what the rest of the program calls: tries, fences, read-back
-    stream        many requests in a row, while nothing unexpected comes; batch: many, and their proof
+    fences        after one, no earlier answer can be received
+    link          the interface for the rest of the program: tries, fences, read-back
+    stream        many requests in a row, while nothing unexpected is received; batch: many, and their proof
 """
 
 from __future__ import annotations
@@ -70,21 +69,21 @@ class Link:
         transport: the medium, open.
         codec: the protocol.
         station: 1 to the codec's last.
-        line: speed and format, for wire times; over TCP and UDP that of the line behind the gateway.
-        timeout_s: the PLC's time to answer, beside wire time.
-        retries: further tries per request.
-        nonces: gives the fences' nonces, never the same twice; for tests.
+        line: speed and format, for wire times; over TCP and UDP those of the line after the gateway.
+        timeout_s: the PLC's time to answer, in seconds, without wire time.
+        retries: retries per request.
+        nonces: returns the fences' nonces, never the same twice; for tests.
         read_only: refuse every request that writes, before a byte is sent.
-        note: is given what a curious user may want to know.
-        warn: is told once that answers come late.
+        note: gets details, for ``-v``.
+        warn: gets a message if answers are late.
 
     Attributes:
-        state: which PLC is asked, how, and what is known of it.
+        state: the PLC, the settings, and what is known of the PLC.
         receiver: its input.
         sender: its output.
         attempts: single tries.
-        fences: what tells late answers apart.
-        counters: what was sent and received so far.
+        fences: exclude late answers.
+        counters: of what was sent and received.
     """
 
     def __init__(
@@ -124,32 +123,32 @@ class Link:
 
     @property
     def station(self) -> int:
-        """The station that is asked; ``fences.change_station`` changes it."""
+        """The station of the PLC; ``fences.change_station`` changes it."""
         return self.state.station
 
     @property
     def timeout_s(self) -> float:
-        """The PLC's time to answer, beside wire time."""
+        """The PLC's time to answer, in seconds, without wire time."""
         return self.state.timeout_s
 
     @property
     def retries(self) -> int:
-        """Further tries per request."""
+        """Retries per request."""
         return self.state.retries
 
     @property
     def echoes(self) -> bool | None:
-        """True if the line returns what is sent on it; None if that is not known."""
+        """True if the line echoes what is sent; None if not known."""
         return self.state.echoes
 
     @property
     def unsolicited(self) -> int:
-        """How often something came that may mean that answers are out of step; numbered ones never are."""
+        """The number of inputs after which answers may be shifted; numbered answers never are."""
         return 0 if self.state.numbered else self.receiver.unsolicited
 
     @property
     def disturbances(self) -> tuple[int, int, int]:
-        """Unsolicited input, errors and fences so far: the same twice means that nothing unexpected came."""
+        """Unsolicited input, errors and fences so far: unchanged means that nothing unexpected was received."""
         counters = self.counters
         return (0, 0, 0) if self.state.numbered else (self.unsolicited, counters.trouble, counters.fences)
 
@@ -157,9 +156,9 @@ class Link:
         """Send a request and return its answer, with retries.
 
         Raises:
-            NoAnswer: no try found an answer to trust.
+            NoAnswer: no valid answer in any try.
             PlcRefused: the answer is an error code.
-            PlcBusy: the PLC is busy, and still was at the last try.
+            PlcBusy: the PLC is busy, still at the last try.
             LineReadOnly: it writes, and the line is read-only.
         """
         state = self.state
@@ -171,7 +170,7 @@ class Link:
             if self.receiver.needs_fence:
                 try:
                     self.fence(request)
-                except LineError as error:  # the fence is still needed: further tries would be in vain
+                except LineError as error:  # the fence is still needed: more tries are useless
                     cause = failure if isinstance(failure, TransportClosed | GatewayTimeout) else error
                     raise no_answer(state, self.receiver, request, cause, effort) from error
             tries = effort.tries
@@ -192,16 +191,16 @@ class Link:
                 return None  # type: ignore[return-value]  # a write's answer is None
         if isinstance(failure, PlcBusy):
             raise PlcBusy(
-                f"{failure.message}; still so {effort}",
+                f"{failure.message}, also {effort}",
                 code=int(failure.details["code"], 16),
                 command=int(failure.details["command"], 16),
                 accepted=failure.accepted,
-                hint=f"wait until it has done its work, or give more than --retries {state.retries}",
+                hint=f"wait until the PLC is ready, or use more than --retries {state.retries}",
             )
         raise no_answer(state, self.receiver, request, failure, effort)
 
     def fence(self, before: Request[Any] | None = None) -> None:
-        """Make sure that no answer to an earlier request can come any more: see ``Fences.pass_one``."""
+        """Make sure that no answer to an earlier request can be received any more: see ``Fences.pass_one``."""
         self.fences.pass_one(before)
 
     def is_made(self, request: Request[A], effort: Effort | None = None) -> bool:
@@ -214,7 +213,7 @@ class Link:
 
         question, made = read_back(request)  # type: ignore[arg-type]  # request.writes: its answer is None
         effort = effort or Effort(self.state)
-        effort.tries = effort.tries or 1  # it was sent, whoever did
+        effort.tries = effort.tries or 1  # it was sent, here or by the caller
         try:
             return made(self.ask(question))
         except (PlcRefused, PlcBusy):
@@ -223,7 +222,7 @@ class Link:
             raise no_answer(self.state, self.receiver, request, error, effort, unknown=True) from error
 
     def broadcast(self, request: Request[None]) -> None:
-        """Send a request to every PLC on the line (station 0). No PLC answers.
+        """Send a broadcast to all PLCs on the line (station 0). PLCs do not reply to broadcasts.
 
         Raises:
             LineReadOnly: it writes, and the line is read-only.
@@ -236,13 +235,13 @@ class Link:
         if late_s > self._late_warned_s:
             self._late_warned_s = late_s * MARGIN  # again when it is much later than that
             self._warn(
-                f"answers come late: {late_words(late_s, self.timeout_s)}; "
-                f"give --timeout {longer_timeout(late_s):g}"
+                f"answers are late: {late_words(late_s, self.timeout_s)}; "
+                f"use --timeout {longer_timeout(late_s):g}"
             )
 
 
 def _may_be_made(request: Request[Any], failure: LineError | PlcBusy | None) -> bool:
-    """True for a write that may have been made, though this was its answer."""
+    """True for a write that may have been made in spite of this error."""
     if isinstance(failure, GatewayTimeout) and not failure.handed_on:
         return False
     return request.writes and not (isinstance(failure, PlcBusy) and not failure.accepted)

@@ -1,4 +1,4 @@
-"""The error of a request that found no answer: what was received instead, and what to check first."""
+"""The error of a request without an answer: what was received instead, and what to check first."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 
 
 class Effort:
-    """What one request has cost so far: tries, other requests, seconds.
+    """Tries, other requests and seconds spent on one request so far.
 
     Args:
         state: of the link.
 
     Attributes:
-        tries: how often the request was sent.
+        tries: how many times the request was sent.
     """
 
     def __init__(self, state: LinkState) -> None:
@@ -38,24 +38,24 @@ class Effort:
 
     @property
     def plc_answers(self) -> bool:
-        """True if the PLC has answered fences in between."""
+        """True if the PLC has answered fences meanwhile."""
         return self._state.counters.fences > self._fences
 
     @property
     def others(self) -> int:
-        """How many requests of the link's own were sent beside it."""
+        """The number of the link's own requests that were sent for it."""
         return self._state.counters.exchanges - self._exchanges - self.tries
 
     @property
     def seconds(self) -> float:
-        """How long it has taken."""
+        """Seconds since the first try."""
         return self._state.transport.clock() - self._began
 
     def __str__(self) -> str:
         others = f"{self.others}{' other' if self.tries else ''} request{'' if self.others == 1 else 's'}"
         tries = f"{self.tries} {'try' if self.tries == 1 else 'tries'}"
         parts = ([tries] if self.tries else []) + ([others] if self.others else [])
-        return f"in {' and '.join(parts)}, {self.seconds:.1f} s in all"
+        return f"in {' and '.join(parts)}, {self.seconds:.1f} s in total"
 
 
 def no_answer(
@@ -67,14 +67,14 @@ def no_answer(
     *,
     unknown: bool = False,
 ) -> LineError:
-    """The error of a request that found no answer, after a look whether that answer is only late.
+    """The error of a request without an answer, after a check whether that answer is only late.
 
     Args:
         state: of the link.
         receiver: its input.
-        request: what was asked.
+        request: the request.
         failure: of the last try, or of the fence before it.
-        effort: what it has cost.
+        effort: tries and time so far.
         unknown: True for a write that may have been made.
     """
     if isinstance(failure, TransportClosed | DeadlinePassed):
@@ -102,7 +102,7 @@ class _Report(Value):
             asked = f"{_named(probe)}, which is sent before {_named(request)}"
         found = self._found()
         if self.unknown:
-            found += "; whether the PLC took it is not known"
+            found += "; it is not known whether the PLC executed it"
         elif request.writes and not self.effort.tries:
             found += "; nothing was written"
         return NoAnswer(
@@ -120,23 +120,23 @@ class _Report(Value):
         if self.gateway:
             return self.gateway.message
         if state.late_s:
-            return f"its answers come late: {late_words(state.late_s, state.timeout_s)}"
+            return f"its answers are late: {late_words(state.late_s, state.timeout_s)}"
         found = f"received {instead}" if instead else "nothing received"
         if self.effort.plc_answers:
             others = "loopbacks" if Command.LOOPBACK in state.codec.commands else "other requests"
             return f"it answers {others}, but not this request; {found}"
         return found
 
-    def _advice(self) -> str:  # noqa: PLR0911  # a way out a case
+    def _advice(self) -> str:  # noqa: PLR0911  # one return for each case
         state, request, instead = self.state, self.request, self.receiver.instead
         if self.gateway:
             return str(self.gateway.hint)
         if state.late_s:
-            return f"give --timeout {longer_timeout(state.late_s):g}"
+            return f"use --timeout {longer_timeout(state.late_s):g}"
         if self.receiver.wrong_number:
             return (
-                "a Modbus TCP server must repeat the number: this server or gateway does not; look for newer "
-                "firmware, or for a mode in which it passes RTU or ASCII on (--protocol modbus-rtu)"
+                "a Modbus TCP server must repeat the number, but this server or gateway does not: look for newer "
+                "firmware, or for a mode that passes on RTU or ASCII (--protocol modbus-rtu)"
             )
         answers = self.effort.plc_answers
         if answers and request.command in PROGRAM_COMMANDS and request.command not in state.answered:
@@ -146,25 +146,25 @@ class _Report(Value):
         if "station" in instead:
             return "check --station"
         if "own request" in instead:
-            return "the PLC is silent: is it on, are A and B the right way round, is the station right?"
+            return "the PLC does not answer: check that it is on, that A and B are not swapped, and --station"
         if answers:
-            return "the PLC is slow or the line loses frames: try a longer --timeout, more --retries"
+            return "the PLC is slow, or the line loses frames: try a longer --timeout or more --retries"
         if instead:
-            return "check --baud, --format and --protocol, and the line's termination and shield"
+            return "check --baud, --format and --protocol, and the termination and shield of the line"
         if over_network(state.transport):
-            return f"is the PLC on, its station right? {AT_AN_ETHERNET_MODULE}"
-        return "is the PLC on and the cable in? Check station, baud and format (factory: station 1, 9600 7E1)"
+            return f"check that the PLC is on, and --station. {AT_AN_ETHERNET_MODULE}"
+        return "check that the PLC is on, and the cable; check station, baud and format (factory: station 1, 9600 7E1)"
 
 
 AT_AN_ETHERNET_MODULE: Final = (
-    "A FATEK Ethernet module does not answer an address that it does not permit, nor when its PLC takes more "
-    "than 300 ms; it serves 8 connections, and one request at a time"
+    "A FATEK Ethernet module does not answer addresses that are not permitted in it, or if its PLC takes more "
+    "than 300 ms; it has 8 connections, and handles one request at a time"
 )
-"""Its limits, [E:ethernet-limits], as a sentence without its full stop."""
+"""Its limits [E:ethernet-limits], as a sentence without a full stop."""
 
 
 def over_network(transport: Transport) -> bool:
-    """True if there may be an Ethernet module in between."""
+    """True if there may be an Ethernet module between computer and PLC."""
     return transport.serial_settings is None and transport.name.startswith(("tcp://", "udp://"))
 
 
@@ -173,8 +173,8 @@ def _named(request: Request[Any]) -> str:
 
 
 def late_words(late_s: float, timeout_s: float) -> str:
-    """How late an answer came."""
-    return f"after {late_s:.2g} s, and --timeout is {timeout_s:g}"
+    """How late an answer was, as text."""
+    return f"after {late_s:.2g} s (--timeout is {timeout_s:g})"
 
 
 def longer_timeout(late_s: float) -> float:

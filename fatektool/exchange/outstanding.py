@@ -1,7 +1,7 @@
-"""Requests without an answer whose answers may still come, and how long the late ones took.
+"""Requests without an answer whose answers may still be received, and how long the late ones took.
 
-A late answer was to be expected, so it is no sign that answers and requests are out of step. It also shows
-how long this PLC takes to answer.
+A late answer is expected, so it does not mean that answers are shifted. It also shows how long this PLC takes to
+answer.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ if TYPE_CHECKING:
     from fatektool.protocol.codec import Frame
 
 _MOST: Final = 64
-"""The oldest, whose answers come first, must not be pushed out by the fences that are sent meanwhile."""
+"""The fences that are sent meanwhile must not push out the oldest, whose answers come first."""
 
 
 class Unanswered(NamedTuple):
-    """A request whose answer may still come.
+    """A request whose answer may still be received.
 
     Attributes:
         sent: the request.
-        since: when request and answer could have crossed the line: the PLC's time starts there.
-        given_s: how long the answer was to be waited for then.
-        waited_for: False if its answer was given up at once.
-        before_s: how long the answer took that was taken for its own, if another one comes.
+        since: when request and answer could have passed the line: the start of the PLC's time.
+        given_s: seconds for the answer from then on.
+        waited_for: False if its answer was not waited for.
+        before_s: seconds that the accepted answer took, in case another one is received.
     """
 
     sent: Sent
@@ -42,7 +42,7 @@ class Unanswered(NamedTuple):
 
 
 class Outstanding:
-    """The requests to one station whose answers may still come, since the last fence.
+    """The requests to one station since the last fence whose answers may still be received.
 
     Args:
         state: of the link; ``late_s`` is kept up to date.
@@ -54,15 +54,15 @@ class Outstanding:
         self._last_at = 0.0
         self._last_given_s = 0.0
         self._requests: deque[Unanswered] = deque(maxlen=_MOST)
-        self._answered_at = -inf  # when the last one of several outstanding answers came
+        self._answered_at = -inf  # when the last one of several outstanding answers was received
 
     @property
     def since(self) -> float | None:
-        """Since when the oldest answer is outstanding; None if none is."""
+        """The time since which the oldest answer is outstanding; None if none is."""
         return self._requests[0].since if self._requests else None
 
     def note_sent(self, sent: Sent, at: float) -> None:
-        """A request was sent.
+        """Note that a request was sent.
 
         Args:
             sent: the request.
@@ -73,19 +73,19 @@ class Outstanding:
         self._last_given_s = self._state.wait_s
 
     def forget(self) -> None:
-        """No answer can come any more."""
+        """Note that no answer can be received any more."""
         self._requests.clear()
 
     def change_station(self) -> None:
-        """Another station is asked from now on."""
+        """Note that requests go to another station from now on."""
         self._last = None
         self._requests.clear()
 
     def keep_last(self, *, waited_for: bool) -> None:
-        """The last request found no answer: it may still come.
+        """Note that the last request has no answer, and that it may still be received.
 
         Args:
-            waited_for: False if it is given up at once.
+            waited_for: False if it is not waited for.
         """
         if self._last is not None:
             sent = self._last._replace(raw=b"")
@@ -99,7 +99,7 @@ class Outstanding:
         return self._last_at + wire_bytes * self._state.byte_time_s
 
     def note_answer(self, frame: Frame) -> None:
-        """An answer was taken. It may be that of an earlier like request; then this one's is outstanding."""
+        """Note an accepted answer. It may be that of an earlier equal request; then this one's is outstanding."""
         for place, request in enumerate(self._requests):
             if request.is_answered_by(frame):
                 self._answered_at = now = self._state.transport.clock()
@@ -113,16 +113,16 @@ class Outstanding:
         request = next((request for request in self._requests if request.is_answered_by(frame)), None)
         if request is not None:
             self._requests.remove(request)
-            if request.waited_for:  # it came, but late: this PLC gets more time from now on
+            if request.waited_for:  # late: this PLC gets more time from now on
                 self._state.late_s = max(self._state.late_s, self._took_s(request), request.before_s)
         self._answered_at = self._state.transport.clock()
         return request is not None
 
     def _took_s(self, request: Unanswered) -> float:
-        """How long the PLC took for an answer that has just come, in seconds.
+        """How long the PLC took for an answer that was just received, in seconds.
 
-        A PLC answers one request after the other, so the time counts from its answer before. If that is less
-        than the answer was waited for, something else took the time, and the whole of it counts.
+        A PLC answers one request after the other, so the time counts from its previous answer. If that is less
+        than the time given for the answer, something else took the time, and all of it counts.
         """
         now = self._state.transport.clock()
         took_s = now - max(request.since, self._answered_at)

@@ -29,11 +29,11 @@ def mapped(codec: Codec, modbus_map: ModbusMap | None) -> Codec:
 def map_in_plc(link: Link) -> ModbusMap:
     """The map that the PLC's registers R3968 to R3980 describe, read over Modbus.
 
-    With R3968 = A55AH the standard references are not in force, that of R3968 included, unless the PLC's own
-    map has the same ones. So what is read there counts only if it describes a map that has R3968 just there.
+    With R3968 = A55AH the standard references are not valid, that of R3968 included, unless the PLC's own map
+    has the same ones. So what is read there is used only if it describes a map that has R3968 at that reference.
 
     Raises:
-        PlcError: they cannot be read, or another map is in force.
+        PlcError: they cannot be read, or the PLC uses another map.
         LineError: no answer.
     """
     from fatektool.protocol.commands import ReadRegisters
@@ -59,6 +59,6 @@ def map_in_plc(link: Link) -> ModbusMap:
     if found.name == STANDARD_NAME or not here:
         raise PlcError(
             "--modbus-map custom: the PLC shows no map of its own at the reference of R3968",
-            hint=f"leave the option out; if the PLC has one, {hint}",
+            hint=f"omit the option; if the PLC has a map of its own, {hint}",
         )
     return found

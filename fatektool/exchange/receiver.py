@@ -1,9 +1,9 @@
-"""What is received beside the answers: noise, frames of other stations, answers that nobody waits for.
+"""Input other than the expected answers: noise, frames of other stations, unexpected answers.
 
-After any of it, answers may be out of step with requests, until a fence shows that nothing else can come:
-``needs_fence``. ``unsolicited`` counts what nobody had asked for: an answer to an earlier request may have
-been taken for that of a later one. Whoever sent many requests of one kind must then check their answers. An
-answer that is still outstanding is not unsolicited, but late (``outstanding``).
+After such input, answers may be shifted against requests, until a fence shows that nothing else can be
+received: ``needs_fence``. ``unsolicited`` counts input that answers no request: an answer to an earlier request
+may have been taken for that of a later one, so the answers to many requests of one kind must be checked. An
+answer that is outstanding is not unsolicited, but late (``outstanding``).
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ if TYPE_CHECKING:
     from fatektool.protocol.codec import Frame
 
 READ_BYTES: Final = 4096
-"""As many bytes are read at once."""
+"""The most bytes of one read."""
 
 LONGEST_LISTENING_S: Final = 2.0
-"""A PLC is listened to this much longer than its time-out, at most, before it is called silent."""
+"""Before a PLC is reported as silent, its answer is waited for at most this much longer than its time-out."""
 
 
 class Receiver:
@@ -38,14 +38,14 @@ class Receiver:
         state: of the link.
 
     Attributes:
-        decoder: cuts the input into frames.
-        outstanding: the requests whose answers may still come.
-        unsolicited: how often something came that nobody had asked for.
-        needs_fence: True until a fence shows that nothing else can come.
-        on_stray: is given each good frame that answers nothing asked then.
-        on_bad_bytes: is given what was no frame.
+        decoder: splits the input into frames.
+        outstanding: the requests whose answers may still be received.
+        unsolicited: the number of inputs that answer no request.
+        needs_fence: True until a fence shows that nothing else can be received.
+        on_stray: gets each valid frame that answers no open request.
+        on_bad_bytes: gets bytes that are not a frame.
         instead: what was received instead of an answer, for messages; empty for nothing.
-        gateway_error: what a gateway answered instead of the PLC to the last request; None if it did not.
+        gateway_error: the answer of a gateway, instead of the PLC, to the last request; None if there is none.
         wrong_number: True if an answer had a transaction number that no request had.
     """
 
@@ -62,15 +62,15 @@ class Receiver:
         self._state = state
         self._counters = state.counters
         self._transport = state.transport
-        self._stations_to_fence: set[int] = set()  # other stations, whose late answers may still come
+        self._stations_to_fence: set[int] = set()  # other stations, whose late answers may still be received
 
     def change_station(self, station: int) -> bool:
-        """Wait for another station's answers; True if an answer to an earlier request may still come from it.
+        """Expect another station's answers; True if an answer from it to an earlier request may still be received.
 
-        Answers carry their station, so those of the station before matter when it is asked again.
+        Answers carry their station, so those of the previous station matter only when it is asked again.
 
         Args:
-            station: the other station; the state still has the one before.
+            station: the other station; the state still has the previous one.
         """
         if self.needs_fence:
             self._stations_to_fence.add(self._state.station)
@@ -80,27 +80,27 @@ class Receiver:
         self.needs_fence = self.needs_fence or may_come
         return may_come
 
-    # --- what became of a request -----------------------------------------------------------------
+    # --- the outcome of a request -----------------------------------------------------------------
 
     def fence_passed(self) -> None:
-        """No answer to an earlier request can come any more."""
+        """Note that no answer to an earlier request can be received any more."""
         self.needs_fence = False
         self.outstanding.forget()
 
     def note_no_answer(self) -> None:
-        """The last request found no answer in time."""
+        """Note that the last request has no answer in time."""
         self.needs_fence = True
         self.outstanding.keep_last(waited_for=True)
 
     def give_up_answer(self) -> None:
-        """The last request was sent, and nobody will wait for its answer."""
+        """Note that the answer to the last request is not waited for."""
         self.needs_fence = True
         self.outstanding.keep_last(waited_for=False)
 
-    # --- what came instead of an answer -----------------------------------------------------------
+    # --- input instead of an answer ---------------------------------------------------------------
 
     def note_bad_bytes(self, error: FrameError) -> None:
-        """Bytes came that are no frame."""
+        """Note bytes that are not a frame."""
         self.needs_fence = True
         self.on_bad_bytes(error)
         if error.checksum:
@@ -108,14 +108,14 @@ class Receiver:
             self.instead = f"a damaged frame ({error.message})"
         else:
             self._counters.garbled += 1
-            self.instead = self.instead or f"{len(error.raw)} bytes that are no frame"
+            self.instead = self.instead or f"{counted(len(error.raw), 'byte')} without a valid frame"
 
     def note_stray(self, frame: Frame, asked: Sent | None = None) -> None:
-        """A good frame came that answers nothing asked now.
+        """Note a valid frame that answers no open request.
 
         Args:
             frame: the frame.
-            asked: what is asked now, if anything is.
+            asked: the open request; None if there is none.
         """
         self._counters.strays += 1
         self.needs_fence = True
@@ -127,24 +127,24 @@ class Receiver:
 
     def _note_unsolicited(self, frame: Frame, asked: Sent | None) -> None:
         if asked is not None and (frame.command, frame.number) == (asked.code, asked.number):
-            pass  # the caller has said what is wrong with it
+            pass  # the caller has set ``instead``
         elif asked is not None and frame.command == asked.code:
             self.wrong_number = True
             self.instead = (
-                f"an answer with transaction number {frame.number:04X}, expected {asked.number:04X}, "
-                "that of the request"
+                f"an answer with transaction number {frame.number:04X}, expected {asked.number:04X} "
+                "as in the request"
             )
         elif frame.command == Command.LOOPBACK:
             self.instead = self.instead or "another loopback's answer"
         else:
             self.instead = self.instead or f"an answer to another command ({frame.command:02X})"
-        if frame.command != Command.LOOPBACK:  # an old fence's answer can be told from all others
+        if frame.command != Command.LOOPBACK:  # the answer to an old fence differs from all others
             self.unsolicited += 1
 
-    # --- when nothing is asked --------------------------------------------------------------------
+    # --- without an open request ------------------------------------------------------------------
 
     def drop_input(self) -> bool:
-        """Before a request: drop the input, after a look at it, as it may show that answers are out of step.
+        """Before a request: drop the input, after a check whether it shows that answers are shifted.
 
         Returns:
             True if there was anything.
@@ -156,11 +156,11 @@ class Receiver:
         return bool(left or found)
 
     def note_unasked(self, found: bytes, left: int = 0) -> None:
-        """Take note of what came and nobody had asked for.
+        """Note input without a request.
 
         Args:
             found: bytes from the transport.
-            left: how many bytes the decoder held that belonged to no frame.
+            left: the number of bytes in the decoder that belonged to no frame.
         """
         self._counters.bytes_received += len(found)
         self.needs_fence = True
@@ -171,14 +171,14 @@ class Receiver:
             self.unsolicited += 1
 
     def listen_until(self, moment: float, *, or_late: bool = False) -> None:
-        """Wait until a moment of the transport's clock, and take note of whatever comes.
+        """Wait until a time of the transport's clock, and note all input.
 
         Args:
-            moment: until when.
-            or_late: end as soon as a late answer came.
+            moment: the time.
+            or_late: end as soon as a late answer is received.
 
         Raises:
-            TransportClosed: the line is gone.
+            TransportClosed: the connection or the device is lost.
         """
         while (rest := moment - self._transport.clock()) > 0 and not (or_late and self._state.late_s):
             try:
@@ -190,7 +190,7 @@ class Receiver:
             self._look_at(found)
 
     def listen_for_late(self) -> None:
-        """Before a PLC is called silent, or its connection made anew: is its answer only late?"""
+        """Check whether an answer is only late, before the PLC is reported as silent or connected again."""
         since = self.outstanding.since
         if since is not None and not self._state.late_s and not self.instead:
             timeout_s = self._state.timeout_s

@@ -1,4 +1,4 @@
-"""How requests are sent: numbered where the protocol numbers them, after the pause that it requires."""
+"""Sending of requests: numbered if the protocol numbers them, after the pause that it requires."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ if TYPE_CHECKING:
     from fatektool.protocol.commands import Request
 
 Encoded = tuple[bytes, int]
-"""A request to be sent: its frame, and its transaction number, 0 where the protocol has none."""
+"""A request to be sent: its frame, and its transaction number (0 if the protocol has none)."""
 
 _LEAST_QUIET_S: Final = 0.00175
-"""Above 19200 baud the pause between frames gets no shorter (Modbus over serial line, section 2.5.1.1)."""
+"""Above 19200 baud the pause between frames is fixed (Modbus over serial line, section 2.5.1.1)."""
 
 
 class Sender:
     """The output of one link.
 
     Args:
-        state: of the link; its transport and its codec's pause stay as they are.
-        receiver: listens in the pause, and is told what was sent.
+        state: of the link; its transport and its codec's pause do not change.
+        receiver: reads in the pause, and gets what was sent.
 
     Attributes:
-        shapes: what the answers to all requests since the last fence look like (``Codec.shape``); empty where
+        shapes: the shapes of the answers to all requests since the last fence (``Codec.shape``); empty if
             fences are unique.
     """
 
@@ -44,7 +44,7 @@ class Sender:
         self._quiet_from = state.transport.clock()
 
     def encode(self, request: Request[Any]) -> Encoded:
-        """A request to be sent; its answer may come from now on, until the next fence.
+        """A request to be sent; its answer may be received from now on, until the next fence.
 
         Raises:
             UsageError: the protocol cannot express it.
@@ -62,10 +62,10 @@ class Sender:
         return state.codec.encode(state.station, request, number), number
 
     def described(self, request: Request[Any], raw: bytes, number: int) -> Sent:
-        """A request with what its answer must carry.
+        """A request with what its answer must contain.
 
         Args:
-            request: it.
+            request: the request.
             raw: its frame.
             number: its transaction number.
         """
@@ -80,17 +80,17 @@ class Sender:
         )
 
     def note_asked(self, request: Request[Any]) -> None:
-        """Remember what the answer to a request looks like; it may come at any time until the next fence."""
+        """Remember the shape of the answer to a request; it may be received until the next fence."""
         if not self._unique_fences:
             self.shapes.add(self._state.codec.shape(request))
 
     def send(self, raw: bytes) -> None:
-        """Write a frame, once the line has been silent for as long as the protocol requires."""
+        """Write a frame, after the line was silent for as long as the protocol requires."""
         if self._quiet_s:
             self._receiver.listen_until(self._quiet_from + self._quiet_s)
         self._state.transport.write(raw)
 
     def note_end(self) -> None:
-        """An exchange is over: the line may be silent from now on."""
+        """Note that an exchange is over: the line may be silent from now on."""
         if self._quiet_s:
             self._quiet_from = self._state.transport.clock()

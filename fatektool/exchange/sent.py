@@ -1,4 +1,4 @@
-"""A request as it is sent, with what its answer must carry."""
+"""A request as sent, with what its answer must contain."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ if TYPE_CHECKING:
 
 
 class Sent(NamedTuple):
-    """A request as it is sent, with what its answer must carry.
+    """A request as sent, with what its answer must contain.
 
     Attributes:
         raw: the frame.
-        station: the station that is asked.
+        station: of the PLC.
         code: the command code in the frame.
-        number: the transaction number; 0 where the protocol has none.
-        size: expected length of the answer in bytes.
+        number: the transaction number; 0 if the protocol has none.
+        size: expected length of the answer, in bytes.
         data: the data that the answer to a loopback must return; None for any other request.
     """
 

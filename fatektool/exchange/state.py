@@ -1,4 +1,4 @@
-"""What all parts of a link share: which PLC is asked, how, and what is known of it and its line so far."""
+"""What all parts of a link share: the PLC, the settings, and what is known of the PLC and its line."""
 
 from __future__ import annotations
 
@@ -13,30 +13,30 @@ if TYPE_CHECKING:
     from fatektool.transport.base import LineSettings, Transport
 
 MARGIN: Final = 1.5
-"""An answer is waited for, and a time-out recommended, this many times as long as the slowest answer took."""
+"""The wait for an answer, and a recommended time-out, in multiples of the slowest answer's time."""
 
 MOST_EXTENSION: Final = 4
-"""An answer is waited for at most this many times as long as the configured time-out."""
+"""The longest wait for an answer, in multiples of the configured time-out."""
 
 
 class LinkState:
-    """Which PLC is asked, how, and what is known of it and its line.
+    """The PLC, the settings, and what is known of the PLC and its line.
 
     Args:
         transport: the medium, open.
         codec: the protocol.
         station: the PLC's station.
         line: speed and format, for wire times.
-        timeout_s: the PLC's time to answer, beside wire time.
-        retries: further tries per request.
+        timeout_s: the PLC's time to answer, in seconds, without wire time.
+        retries: retries per request.
         read_only: refuse every request that writes.
 
     Attributes:
-        counters: what was sent and received so far.
-        echoes: True if the line returns what is sent on it; None if that is not known.
+        counters: of what was sent and received.
+        echoes: True if the line echoes what is sent; None if not known.
         answered: the commands that this PLC has answered.
-        late_s: the longest that an answer took that came too late, beside wire time; 0 if none did.
-        extends_wait: False where every answer is to have the same time.
+        late_s: the longest time of a late answer, in seconds, without wire time; 0 if none was late.
+        extends_wait: False if every answer has the same time.
     """
 
     def __init__(
@@ -72,28 +72,28 @@ class LinkState:
 
     @property
     def wait_s(self) -> float:
-        """How long an answer is waited for, beside wire time: longer where answers came late."""
+        """Seconds to wait for an answer, without wire time: longer after late answers."""
         if not self.late_s or not self.extends_wait:
             return self.timeout_s
         return min(max(self.timeout_s, MARGIN * self.late_s), MOST_EXTENSION * self.timeout_s)
 
     def change_station(self, station: int) -> None:
-        """Ask another station from now on; nothing is known of it yet."""
+        """Send requests to another station from now on; nothing is known of it yet."""
         self.station = station
         self.answered.clear()
         self.late_s = 0.0
         self._assume_no_echo_on_tcp()
 
     def _assume_no_echo_on_tcp(self) -> None:
-        """A Modbus TCP server sends no echo. Not assumed of unit 0, so that a read goes before a write."""
+        """A Modbus TCP server sends no echo. Not assumed for unit 0, so that a read is sent before a write."""
         if self.numbered:
             self.echoes = None if self.station == 0 else False
 
     def must_learn_echo(self, request: Request[Any]) -> bool:
-        """True where it is not known whether the line echoes, and this request needs that to be known.
+        """True if it is not known whether the line echoes, and this request needs to know.
 
-        The echo of some requests reads as their answer. And a gateway passes a write to unit 0 on to every
-        PLC behind it, none of which answers: so a read must show first that a single PLC answers there.
+        The echo of some requests equals their answer. And a gateway passes on a write to unit 0 to all PLCs on
+        its line, and none of them answers: so a read must show first that a single PLC answers there.
         """
         return self.echoes is None and (
             self.codec.echo_may_pass(request) or (request.writes and self.station == 0)

@@ -1,15 +1,16 @@
-"""The fast way through many requests, as long as nothing unexpected comes.
+"""Many requests in quick succession, as long as nothing unexpected is received.
 
-An answer to a read that has the right length lets the next request go at once, and is examined while the PLC
-works on that one. A write is sent when the one before it is acknowledged, and is encoded by then::
+After an answer to a read with the right length, the next request is sent at once, and the answer is examined
+while the PLC works on that request. A write is sent when the one before it is acknowledged; it is encoded by
+then::
 
     reads     request n+1 ─>  examine answer n, encode request n+2  <─ answer n+1
     writes    request n   ─>  encode request n+1  <─ answer n, examine it
 
-What an answer must be is known before it comes: its length, and all of it but values and checksum. So a good
-one is taken without a decoder (``Codec.good_answer``). Anything else (a time-out, a wrong length or checksum,
-input beside the answer, an error code) ends the stream: a decoder finds out what it was, the answer that may
-still come is outstanding, and the caller goes on with ``Link.ask``, behind a fence.
+The length of an answer, and all of it except values and checksum, is known before it is received. So a valid
+answer is accepted without a decoder (``Codec.good_answer``). Anything else (a time-out, a wrong length or
+checksum, input beside the answer, an error code) ends the stream: a decoder finds out what it was, the answer
+that may still be received is outstanding, and the caller goes on with ``Link.ask``, after a fence.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ A = TypeVar("A")
 
 
 def no_more() -> bool:
-    """All requests are known."""
+    """Return False: all requests are known."""
     return False
 
 
@@ -42,20 +43,20 @@ def ask_in_stream(
     take: Callable[[A], None],
     more: Callable[[], bool] = no_more,
 ) -> bool:
-    """Send one request after the other from ``requests[first]``, until the end or anything unexpected.
+    """Send one request after the other from ``requests[first]``, until the end or unexpected input.
 
     Args:
         link: the link.
         requests: all reads, or all writes.
         first: the one to begin with.
-        take: is given each answer, in order.
-        more: adds a read to ``requests`` while the PLC works on the one before; False if there is none.
+        take: gets each answer, in order.
+        more: adds a read to ``requests`` while the PLC works on the one before; returns False if there is none.
 
     Returns:
-        True if the request behind the last answer was sent, and its outcome is not known.
+        True if the request after the last answer was sent, and its outcome is not known.
 
     Raises:
-        PlcRefused: a write is refused; of a read, the caller learns it by asking again.
+        PlcRefused: a write is refused. If a read is refused, the caller finds out when it asks again.
         LineReadOnly: they write, and the line is read-only.
     """
     if link.receiver.drop_input() or link.receiver.needs_fence or link.echoes is not False:
@@ -70,13 +71,13 @@ def ask_in_stream(
         return True
     except PlcRefused:
         raise
-    except BaseException:  # an interrupt: the answer may still come
+    except BaseException:  # an interrupt: the answer may still be received
         stream.leave_outstanding(waited_for=True)
         raise
 
 
 class _Stream(Generic[A]):
-    """Requests in a row; the last one sent is remembered, as its answer may still come."""
+    """Requests in a row; the last one sent is remembered, because its answer may still be received."""
 
     def __init__(self, link: Link, take: Callable[[A], None]) -> None:
         self._take = take
@@ -122,7 +123,7 @@ class _Stream(Generic[A]):
                 whole = None
                 if self._receiver.drop_input():
                     break
-            else:  # a refusal, mostly: nothing is sent behind it whose answer nobody would wait for
+            else:  # usually a refusal: no request is sent after it whose answer nobody would wait for
                 return True
         return whole is not None and not self._examine(requests[place], self._encoded, whole)
 
@@ -151,10 +152,10 @@ class _Stream(Generic[A]):
         return False
 
     def leave_outstanding(self, *, waited_for: bool) -> None:
-        """The answer to the last request sent may still come.
+        """Note that the answer to the last request sent may still be received.
 
         Args:
-            waited_for: False if it is given up at once.
+            waited_for: False if it is not waited for.
         """
         if self._request is not None:
             sent = self._sender.described(self._request, *self._encoded)
@@ -172,7 +173,7 @@ class _Stream(Generic[A]):
         self._counters.exchanges += 1
 
     def _receive(self, request: Request[A]) -> bytes | Frame | None:
-        """Bytes of the answer's length; a frame, if one of another length came; else None."""
+        """Bytes of the answer's length; a frame, if one of another length was received; else None."""
         size = self._codec.answer_bytes(request)
         limit_s = (len(self._encoded[0]) + size) * self._byte_time_s + self._wait_s
         try:
@@ -185,10 +186,10 @@ class _Stream(Generic[A]):
         return answer
 
     def _receive_rest(self, data: bytes, size: int, end: float) -> bytes | Frame | None:
-        """The same, in pieces. What has come in time counts, however late this process looks.
+        """The same, in pieces. Bytes that arrived in time are accepted, even if this process is delayed.
 
         Args:
-            data: what came so far.
+            data: the bytes received so far.
             size: the answer's length.
             end: the end of its time, by the transport's clock.
         """
@@ -222,7 +223,7 @@ class _Stream(Generic[A]):
             self._counters.bytes_received += len(data)
 
     def _examine(self, request: Request[A], encoded: Encoded, whole: bytes) -> bool:
-        """Take an answer of the right length if it is the good one; else find out what it is.
+        """Accept an answer of the right length if it is valid; else find out what it is.
 
         Raises:
             PlcRefused: a write is refused.
@@ -246,7 +247,7 @@ class _Stream(Generic[A]):
         return frame is not None and self._examine_frame(request, encoded, frame)
 
     def _examine_frame(self, request: Request[A], encoded: Encoded, frame: Frame) -> bool:
-        """Take the answer in a frame; False if it is none, or an error code.
+        """Accept the answer in a frame; False if it is not one, or an error code.
 
         Raises:
             PlcRefused: a write is refused.
