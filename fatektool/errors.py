@@ -122,8 +122,8 @@ class TransportClosed(TransportError):
     Args:
         message: what happened.
         hint: the next step.
-        may_return: True for a connection that was refused, reset or closed by the other side, which may accept
-            the next one soon.
+        may_return: True for a connection that was refused, reset or closed by the other side, which may
+            accept the next one soon.
     """
 
     def __init__(self, message: str, *, hint: str | None = None, may_return: bool = False) -> None:

@@ -19,6 +19,7 @@ ROOT = Path(fatektool.__file__).parent
 RANKS = {
     "callbacks": 0,
     "value": 0,
+    "counts": 0,
     "errors": 0,
     "protocols": 0,
     "version": 0,

@@ -4,8 +4,8 @@ A two-wire line may echo every byte. The echo of most requests differs from ever
 STOP and RUN does not. So before the first of those, another request shows whether this line echoes; from then
 on the first copy is the echo and the second the answer.
 
-Deadline = wire time of request and longest answer at this baud + the PLC's time. A late answer that is received in
-the meantime extends it, because this PLC needs more time.
+Deadline = wire time of request and longest answer at this baud + the PLC's time. A late answer that is
+received in the meantime extends it, because this PLC needs more time.
 """
 
 from __future__ import annotations

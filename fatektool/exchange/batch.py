@@ -1,18 +1,18 @@
 """Many requests of one kind, reads or writes, so that none gets the answer to another.
 
-An answer that is received twice could be taken for that of the next request, and shift all that follow by one.
-So answers count as proven only after a fence:
+An answer that is received twice could be taken for that of the next request, and shift all that follow by
+one. So answers count as proven only after a fence:
 
 - After unsolicited input, everything that was read since the last fence is read again, each request after a
   fence of its own, because the first answer after a fence is the right one.
 - Another error (a time-out, noise, a frame of another station) may have been the extra answer, damaged, and
-  the answers before it may be shifted. A few of them show it: the one in whose exchange the error was, the one
-  before, and the last that differs from the one after it. These are read again.
+  the answers before it may be shifted. A few of them show it: the one in whose exchange the error was, the
+  one before, and the last that differs from the one after it. These are read again.
 - At the end a fence is sent, with the same check if anything unexpected is received before its answer.
 
 On a clean line this costs one fence, and nothing if answers carry the number of their request. One case is
-not detected, because nothing shows it: an answer received twice, with the next one lost. A second pass of reads
-finds that.
+not detected, because nothing shows it: an answer received twice, with the next one lost. A second pass of
+reads finds that.
 """
 
 from __future__ import annotations
@@ -98,8 +98,8 @@ def proven(link: Link, work: Callable[[], B], again: Callable[[], B]) -> B:
     Args:
         link: the link.
         work: sends requests and returns what it found.
-        again: the same, each of its reads after a fence (``Link.fence``) of its own. It is called if something
-            unexpected was received, because an answer may then have been that of another request.
+        again: the same, each of its reads after a fence (``Link.fence``) of its own. It is called if
+            something unexpected was received, because an answer may then have been that of another request.
 
     Raises:
         NoAnswer: no valid answer.
@@ -164,7 +164,7 @@ class _Batch(Generic[A]):
             self._on_answer(len(self.answers))
 
     def ask(self) -> None:
-        """Send the next request by itself, with retries, and check whether anything unexpected was received."""
+        """Send the next request alone, with retries, and check whether anything unexpected was received."""
         place = len(self.answers)
         self.take(self._link.ask(self._requests[place]))
         if self._link.disturbances != self._disturbances:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from fatektool.counts import counted
+
 
 @dataclass(slots=True)
 class Counters:
@@ -26,7 +28,8 @@ class Counters:
 
     def __str__(self) -> str:
         return (
-            f"{self.exchanges} exchanges, {self.bytes_received} bytes received, {self.timeouts} time-outs, "
-            f"{self.checksum_errors} wrong checksums, {self.garbled} times noise, "
-            f"{self.strays} stray answers, {self.echoes} echoes, {self.fences} fences"
+            f"{counted(self.exchanges, 'exchange')}, {counted(self.bytes_received, 'byte')} received, "
+            f"{counted(self.timeouts, 'time-out')}, {counted(self.checksum_errors, 'wrong checksum')}, "
+            f"noise {counted(self.garbled, 'time')}, {counted(self.strays, 'stray answer')}, "
+            f"{counted(self.echoes, 'echo', 'echoes')}, {counted(self.fences, 'fence')}"
         )

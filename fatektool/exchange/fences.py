@@ -2,9 +2,9 @@
 
 A fence is a request whose answer differs from the answer to every other request. FACON has the loopback (4E),
 which returns a new nonce. Everything received before that answer is dropped, and only the exact nonce counts,
-so the answer to an older fence does not. A protocol without such a request reads a length that no other request
-had. If no length is left, or the earlier requests are not known, or the PLC refuses the fence, then silence is
-used instead: nothing must be received for as long as a PLC may take.
+so the answer to an older fence does not. A protocol without such a request reads a length that no other
+request had. If no length is left, or the earlier requests are not known, or the PLC refuses the fence, then
+silence is used instead: nothing must be received for as long as a PLC may take.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ class Fences:
             PlcRefused: it refuses it.
         """
         if self._state.numbered:
-            self._receiver.needs_fence = False  # a late answer may still be received, and shows that the PLC is slow
+            self._receiver.needs_fence = False  # a late answer shows that the PLC is slow
         elif not self._by_request(before):
             self._by_silence()
 
@@ -119,7 +119,9 @@ class Fences:
             self._by_silence()
         if passed is None:
             return True
-        self._note("this PLC does not answer the loopback (4E): late answers to earlier requests cannot be excluded")
+        self._note(
+            "this PLC does not answer the loopback (4E): late answers to earlier requests cannot be excluded"
+        )
         self._passed()
         return False
 

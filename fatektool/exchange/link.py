@@ -5,16 +5,17 @@ time-out, the late answer to page 5 could be taken for page 6. This is prevented
 
 - Input is dropped before each request.
 - After anything unexpected (a time-out, noise, an unsolicited answer), a **fence** is sent before the next
-  request: see ``fences``. If answers repeat a number of their request (``Codec.numbers``), no fence is needed.
+  request: see ``fences``. If answers repeat a number of their request (``Codec.numbers``), no fence is
+  needed.
 - A write whose answer was lost is read back before it is sent again.
 
-``unsolicited`` counts input after which an earlier answer may have been taken for another's. After many requests
-of one kind, a fence is sent, and what may be wrong is read again: that is ``batch.read_all``.
+``unsolicited`` counts input after which an earlier answer may have been taken for another's. After many
+requests of one kind, a fence is sent, and what may be wrong is read again: that is ``batch.read_all``.
 
 A PLC whose answers are late gets more time, up to four times as much; a silent one does not. A busy PLC is
 asked again, after pauses that grow. If the PLC refuses a request of the link itself (a fence, a read to learn
-whether the line echoes, a read-back), that is not reported as an answer to the caller's request: the link goes
-on without it.
+whether the line echoes, a read-back), that is not reported as an answer to the caller's request: the link
+goes on without it.
 
 Each part is a file, and imports only those above it::
 
@@ -148,7 +149,7 @@ class Link:
 
     @property
     def disturbances(self) -> tuple[int, int, int]:
-        """Unsolicited input, errors and fences so far: unchanged means that nothing unexpected was received."""
+        """Unsolicited input, errors and fences so far: unchanged if nothing unexpected was received."""
         counters = self.counters
         return (0, 0, 0) if self.state.numbered else (self.unsolicited, counters.trouble, counters.fences)
 
@@ -200,7 +201,7 @@ class Link:
         raise no_answer(state, self.receiver, request, failure, effort)
 
     def fence(self, before: Request[Any] | None = None) -> None:
-        """Make sure that no answer to an earlier request can be received any more: see ``Fences.pass_one``."""
+        """Exclude later answers to earlier requests: see ``Fences.pass_one``."""
         self.fences.pass_one(before)
 
     def is_made(self, request: Request[A], effort: Effort | None = None) -> bool:

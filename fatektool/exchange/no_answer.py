@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from math import ceil
 from typing import TYPE_CHECKING, Any, Final
 
+from fatektool.counts import counted
 from fatektool.errors import DeadlinePassed, GatewayTimeout, NoAnswer, TransportClosed
 from fatektool.exchange.state import MARGIN
 from fatektool.protocol.commands import PROGRAM_COMMANDS, Command
@@ -52,8 +53,8 @@ class Effort:
         return self._state.transport.clock() - self._began
 
     def __str__(self) -> str:
-        others = f"{self.others}{' other' if self.tries else ''} request{'' if self.others == 1 else 's'}"
-        tries = f"{self.tries} {'try' if self.tries == 1 else 'tries'}"
+        others = counted(self.others, "other request" if self.tries else "request")
+        tries = counted(self.tries, "try", "tries")
         parts = ([tries] if self.tries else []) + ([others] if self.others else [])
         return f"in {' and '.join(parts)}, {self.seconds:.1f} s in total"
 
@@ -135,8 +136,8 @@ class _Report(Value):
             return f"use --timeout {longer_timeout(state.late_s):g}"
         if self.receiver.wrong_number:
             return (
-                "a Modbus TCP server must repeat the number, but this server or gateway does not: look for newer "
-                "firmware, or for a mode that passes on RTU or ASCII (--protocol modbus-rtu)"
+                "a Modbus TCP server must repeat the number, but this server or gateway does not: look for "
+                "newer firmware, or for a mode that passes on RTU or ASCII (--protocol modbus-rtu)"
             )
         answers = self.effort.plc_answers
         if answers and request.command in PROGRAM_COMMANDS and request.command not in state.answered:
@@ -153,12 +154,12 @@ class _Report(Value):
             return "check --baud, --format and --protocol, and the termination and shield of the line"
         if over_network(state.transport):
             return f"check that the PLC is on, and --station. {AT_AN_ETHERNET_MODULE}"
-        return "check that the PLC is on, and the cable; check station, baud and format (factory: station 1, 9600 7E1)"
+        return "check that the PLC is on, the cable, station, baud and format (factory: station 1, 9600 7E1)"
 
 
 AT_AN_ETHERNET_MODULE: Final = (
-    "A FATEK Ethernet module does not answer addresses that are not permitted in it, or if its PLC takes more "
-    "than 300 ms; it has 8 connections, and handles one request at a time"
+    "A FATEK Ethernet module does not answer addresses that are not permitted in it, or if its PLC takes "
+    "more than 300 ms; it has 8 connections, and handles one request at a time"
 )
 """Its limits [E:ethernet-limits], as a sentence without a full stop."""
 

@@ -1,7 +1,7 @@
 """Requests without an answer whose answers may still be received, and how long the late ones took.
 
-A late answer is expected, so it does not mean that answers are shifted. It also shows how long this PLC takes to
-answer.
+A late answer is expected, so it does not mean that answers are shifted. It also shows how long this PLC takes
+to answer.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ class Outstanding:
         return self._last_at + wire_bytes * self._state.byte_time_s
 
     def note_answer(self, frame: Frame) -> None:
-        """Note an accepted answer. It may be that of an earlier equal request; then this one's is outstanding."""
+        """Note an accepted answer; if it was that of an earlier equal request, this one's is outstanding."""
         for place, request in enumerate(self._requests):
             if request.is_answered_by(frame):
                 self._answered_at = now = self._state.transport.clock()
@@ -121,8 +121,8 @@ class Outstanding:
     def _took_s(self, request: Unanswered) -> float:
         """How long the PLC took for an answer that was just received, in seconds.
 
-        A PLC answers one request after the other, so the time counts from its previous answer. If that is less
-        than the time given for the answer, something else took the time, and all of it counts.
+        A PLC answers one request after the other, so the time counts from its previous answer. If that is
+        less than the time given for the answer, something else took the time, and all of it counts.
         """
         now = self._state.transport.clock()
         took_s = now - max(request.since, self._answered_at)

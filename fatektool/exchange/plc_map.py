@@ -30,7 +30,8 @@ def map_in_plc(link: Link) -> ModbusMap:
     """The map that the PLC's registers R3968 to R3980 describe, read over Modbus.
 
     With R3968 = A55AH the standard references are not valid, that of R3968 included, unless the PLC's own map
-    has the same ones. So what is read there is used only if it describes a map that has R3968 at that reference.
+    has the same ones. So what is read there is used only if it describes a map that has R3968 at that
+    reference.
 
     Raises:
         PlcError: they cannot be read, or the PLC uses another map.

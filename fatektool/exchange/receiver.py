@@ -1,9 +1,9 @@
 """Input other than the expected answers: noise, frames of other stations, unexpected answers.
 
 After such input, answers may be shifted against requests, until a fence shows that nothing else can be
-received: ``needs_fence``. ``unsolicited`` counts input that answers no request: an answer to an earlier request
-may have been taken for that of a later one, so the answers to many requests of one kind must be checked. An
-answer that is outstanding is not unsolicited, but late (``outstanding``).
+received: ``needs_fence``. ``unsolicited`` counts input that answers no request: an answer to an earlier
+request may have been taken for that of a later one, so the answers to many requests of one kind must be
+checked. An answer that is outstanding is not unsolicited, but late (``outstanding``).
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from fatektool.callbacks import ignore
+from fatektool.counts import counted
 from fatektool.errors import FrameError, TransportTimeout
 from fatektool.exchange.outstanding import Outstanding
 from fatektool.exchange.state import MOST_EXTENSION
@@ -45,7 +46,8 @@ class Receiver:
         on_stray: gets each valid frame that answers no open request.
         on_bad_bytes: gets bytes that are not a frame.
         instead: what was received instead of an answer, for messages; empty for nothing.
-        gateway_error: the answer of a gateway, instead of the PLC, to the last request; None if there is none.
+        gateway_error: the answer of a gateway, instead of the PLC, to the last request; None if there is
+            none.
         wrong_number: True if an answer had a transaction number that no request had.
     """
 
@@ -65,7 +67,7 @@ class Receiver:
         self._stations_to_fence: set[int] = set()  # other stations, whose late answers may still be received
 
     def change_station(self, station: int) -> bool:
-        """Expect another station's answers; True if an answer from it to an earlier request may still be received.
+        """Expect another station's answers; True if one to an earlier request may still be received from it.
 
         Answers carry their station, so those of the previous station matter only when it is asked again.
 

@@ -85,15 +85,15 @@ class LinkState:
         self._assume_no_echo_on_tcp()
 
     def _assume_no_echo_on_tcp(self) -> None:
-        """A Modbus TCP server sends no echo. Not assumed for unit 0, so that a read is sent before a write."""
+        """A Modbus TCP server sends no echo. For unit 0 that is open, so that a read precedes a write."""
         if self.numbered:
             self.echoes = None if self.station == 0 else False
 
     def must_learn_echo(self, request: Request[Any]) -> bool:
         """True if it is not known whether the line echoes, and this request needs to know.
 
-        The echo of some requests equals their answer. And a gateway passes on a write to unit 0 to all PLCs on
-        its line, and none of them answers: so a read must show first that a single PLC answers there.
+        The echo of some requests equals their answer. And a gateway passes on a write to unit 0 to all PLCs
+        on its line, and none of them answers: so a read must show first that a single PLC answers there.
         """
         return self.echoes is None and (
             self.codec.echo_may_pass(request) or (request.writes and self.station == 0)

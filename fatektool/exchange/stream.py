@@ -50,7 +50,8 @@ def ask_in_stream(
         requests: all reads, or all writes.
         first: the one to begin with.
         take: gets each answer, in order.
-        more: adds a read to ``requests`` while the PLC works on the one before; returns False if there is none.
+        more: adds a read to ``requests`` while the PLC works on the one before; returns False if there is
+            none.
 
     Returns:
         True if the request after the last answer was sent, and its outcome is not known.

@@ -23,6 +23,7 @@ import socket
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
+from fatektool.counts import counted
 from fatektool.program.image import ranges
 
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ def subject(
         size = f"ladder size {found.a_ladder_words} -> {found.b_ladder_words} words, "
     else:
         size = ""
-    words = f"{count(found.word_count, 'word')} in {count(len(found.pages), 'page')}"
+    words = f"{counted(found.word_count, 'word')} in {counted(len(found.pages), 'page')}"
     return f"{name}: {size}{words} changed" if networks is None else f"{name}: {size}{networks} ({words})"
 
 
@@ -97,11 +98,6 @@ def read_at(backup: Backup, otherwise: int) -> int:
         return max(0, int(datetime.fromisoformat(backup.created).astimezone(UTC).timestamp()))
     except (ValueError, OverflowError):
         return otherwise
-
-
-def count(number: int, noun: str) -> str:
-    """A number with its noun: ``1 word``, ``2 words``."""
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
 def _address(text: str) -> str:

@@ -70,7 +70,7 @@ class MessageTable:
         require_range("length", self.message_length, 0xFFFF)
         if len(self.data) != min(self.message_length, MAX_MESSAGE):
             raise UsageError(
-                f"length: expected that of the data, {len(self.data)} bytes, got {self.message_length}"
+                f"length: expected {len(self.data)}, as the data has, got {self.message_length}"
                 if len(self.data) <= MAX_MESSAGE
                 else f"data: expected at most {MAX_MESSAGE} bytes, got {len(self.data)}"
             )

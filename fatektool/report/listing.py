@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from fatektool.counts import counted
 from fatektool.report.ladder import ladder, not_drawn
-from fatektool.report.markup import Html, counted, figure, table, tag
+from fatektool.report.markup import Html, figure, table, tag
 from fatektool.report.page import Report, Verdict, code, note, render, section
 
 if TYPE_CHECKING:

@@ -97,11 +97,6 @@ def plain(value: object) -> str:
             return str(value)
 
 
-def counted(number: int, noun: str) -> str:
-    """``1 word``, ``2 words``."""
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
-
-
 def when(time: str | None) -> Html:
     """A time of a document, RFC 3339 in UTC, as people read it."""
     if time is None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from fatektool.counts import counted
 from fatektool.report.markup import NEWLINE, Html, join, tag
 from fatektool.report.svg import WIDTH, canvas, label
 
@@ -51,7 +52,7 @@ def page_map(name: str, title: str, pages: int, changed: Mapping[int, int | None
         legend.append(
             _key(2, bottom, "in one only", _marked(_LEFT + 2 * _APART, bottom + 10, "one", lone=True))
         )
-    said = f"{pages} pages in rows of {_COLUMNS}; {len(changed)} differ."
+    said = f"{counted(pages, 'page')} in rows of {_COLUMNS}; {counted(len(changed), 'differs', 'differ')}."
     return canvas(name, title, said, bottom + _LEGEND, join([*drawn, *legend], NEWLINE))
 
 
@@ -83,4 +84,4 @@ def _key(number: int, bottom: int, said: str, cell: Html) -> Html:
 def _words(words: int | None) -> str:
     if words is None:
         return "only in one of the two"
-    return "1 word differs" if words == 1 else f"{words} words differ"
+    return counted(words, "word differs", "words differ")

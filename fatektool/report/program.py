@@ -9,9 +9,10 @@ from __future__ import annotations
 import struct
 from typing import TYPE_CHECKING, Any, Final
 
+from fatektool.counts import counted
 from fatektool.program.headers.header import PAGE_WORDS
 from fatektool.program.image import page_count
-from fatektool.report.markup import DASH, Html, counted, figure, table, tag, when
+from fatektool.report.markup import DASH, Html, figure, table, tag, when
 from fatektool.report.networks import changed_networks
 from fatektool.report.page import Report, Verdict, code, note, render, section
 from fatektool.report.page_map import page_map

@@ -9,7 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-from fatektool.report.markup import DASH, Html, counted, figure, plain, table, tag, when
+from fatektool.counts import counted
+from fatektool.report.markup import DASH, Html, figure, plain, table, tag, when
 from fatektool.report.page import Report, Verdict, chart, note, render, section
 from fatektool.report.rounds import MOST_GAPS, Round, Rounds, Track, is_number
 from fatektool.report.scale import stamp

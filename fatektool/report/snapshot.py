@@ -5,7 +5,8 @@ from __future__ import annotations
 from itertools import islice
 from typing import TYPE_CHECKING, Any, Final
 
-from fatektool.report.markup import DASH, Html, counted, figure, table, tag, when
+from fatektool.counts import counted
+from fatektool.report.markup import DASH, Html, figure, table, tag, when
 from fatektool.report.page import Report, Verdict, note, render, section
 
 if TYPE_CHECKING:

@@ -188,7 +188,7 @@ ERRORS = r"""
 3 status -p tcp://plc.invalid
     plc.invalid: no such host
 3 status -p PLC -s 9
-    no answer from station 9 .*in 1 try and 4 other requests, 2.6 s in all:
+    no answer from station 9 .*in 1 try and 4 other requests, 2.6 s in total:
 4 restore new.json -p PLC --yes [running]
     make the machine safe, then add --stop
 4 restore new.json -p PLC --dry-run [running]

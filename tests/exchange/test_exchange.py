@@ -132,7 +132,7 @@ def test_a_refusal_is_an_answer_and_is_not_tried_again() -> None:
 
 def test_retries_zero_is_one_try() -> None:
     peer = Script()
-    with pytest.raises(NoAnswer, match=r"in 1 try, 2\.0 s in all: nothing received"):
+    with pytest.raises(NoAnswer, match=r"in 1 try, 2\.0 s in total: nothing received"):
         linked(peer, retries=0).ask(R0)
     assert peer.heard == [ASK_R0]
 

@@ -61,13 +61,13 @@ def test_it_is_answered_or_told_as_late(delay_s: float, request_: Request[Any]) 
         link = late(delay_s, retries=retries, warnings=warnings)
         error = failure_of(link, request_)
         if error is not None:
-            assert "its answers come late: after" in error.message
+            assert "its answers are late: after" in error.message
             assert "and --timeout is 0.5" in error.message
             assert f"give --timeout {longer_timeout(link.state.late_s):g}" in str(error.hint)
             assert error.details["late_s"] == pytest.approx(link.state.late_s, abs=0.001)
         else:
             (told,) = warnings
-            assert told.startswith("answers come late: after ")
+            assert told.startswith("answers are late: after ")
             assert "give --timeout" in told
         assert delay_s - 0.01 <= link.state.late_s <= delay_s + 0.06
 

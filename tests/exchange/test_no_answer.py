@@ -60,17 +60,17 @@ def said(link: Link, request: object = R0) -> NoAnswer:
 def test_a_dead_line() -> None:
     error = said(linked(Script()))
     assert (
-        "to 'read registers' (46) in 1 try and 4 other requests, 2.6 s in all: nothing received"
+        "to 'read registers' (46) in 1 try and 4 other requests, 2.6 s in total: nothing received"
         in error.message
     )
-    assert "is the PLC on and the cable in?" in str(error.hint)
+    assert "check that the PLC is on, the cable" in str(error.hint)
     assert "9600 7E1" in str(error.hint)
     assert error.details["heard"] is None
 
 
 def test_garbage() -> None:
     error = said(linked(Whatever(b"\x8a\xf0\x13\x91\x7f")))
-    assert "received 5 bytes that are no frame" in error.message
+    assert "received 5 bytes without a valid frame" in error.message
     assert "--baud, --format and --protocol" in str(error.hint)
     assert "termination" in str(error.hint)
 
@@ -131,11 +131,11 @@ def test_a_live_plc_that_loses_this_one() -> None:
 def test_a_write_of_unknown_fate() -> None:
     error = said(linked(Script()), WriteRegisters(Element.parse("R0"), (1,)))
     assert "to 'write registers' (47)" in error.message
-    assert "whether the PLC took it is not known" in error.message
+    assert "it is not known whether the PLC executed it" in error.message
 
 
 def test_one_try() -> None:
-    assert "in 1 try, 2.0 s in all: nothing received" in said(linked(Script(), retries=0)).message
+    assert "in 1 try, 2.0 s in total: nothing received" in said(linked(Script(), retries=0)).message
 
 
 def test_the_line_is_named_where_there_is_one() -> None:
@@ -148,5 +148,5 @@ def test_the_line_is_named_where_there_is_one() -> None:
         "no answer from station 9 on /dev/ttyUSB0 (19200 8N1) to 'read brief status' (40), "
         "which is sent before 'loopback' (4E)"
     )
-    assert "in 3 requests, 3.8 s in all: nothing received" in caught.value.message
+    assert "in 3 requests, 3.8 s in total: nothing received" in caught.value.message
     assert isinstance(caught.value, LineError)

@@ -153,7 +153,7 @@ def test_a_write_that_cannot_be_read_back_is_sent_again() -> None:
 
 def test_a_write_on_a_line_that_dies_says_that_its_fate_is_not_known() -> None:
     peer = Rules(dead=True)
-    with pytest.raises(NoAnswer, match=r"to 'write registers'.*whether the PLC took it is not known"):
+    with pytest.raises(NoAnswer, match=r"to 'write registers'.*it is not known whether the PLC executed it"):
         linked(peer).ask(WriteRegisters(R5, (1,)))
     assert sum(request[3:5] == b"47" for request in peer.heard) == 1
 

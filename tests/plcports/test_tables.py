@@ -136,7 +136,7 @@ def test_what_fits_no_word() -> None:
             SharedBlock(1, 4, 1, good, reserved)
     with pytest.raises(UsageError, match="expected 0 to 255, got 256"):
         ClinkTable((Transaction(1, 1, 1, good, good),) * 256)
-    with pytest.raises(UsageError, match="expected that of the data, 2 bytes, got 3"):
+    with pytest.raises(UsageError, match="expected 2, as the data has, got 3"):
         MessageTable(False, 0, 0, 0, (1, 2), 3)  # noqa: FBT003  # not MD2
     with pytest.raises(UsageError, match="at most 511 bytes, got 512"):
         MessageTable(False, 0, 0, 0, (0,) * 512)  # noqa: FBT003  # not MD2

@@ -26,6 +26,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from fatektool.callbacks import ignore
+from fatektool.counts import counted
 from fatektool.errors import DataError, FatektoolError, UsageError
 from fatektool.jobs.check.age import age_words
 from fatektool.jobs.check.result import CheckResult, State
@@ -142,8 +143,7 @@ def _compare(plc: Plc, found: CheckResult, name: str, program: ProgramFile, prog
     compared = verify_file(plc, program, progress=progress)
     different = compared.pages
     found.differs = not different.same
-    words = "1 word" if different.word_count == 1 else f"{different.word_count} words"
-    pages = "1 page" if len(different.pages) == 1 else f"{len(different.pages)} pages"
+    words, pages = counted(different.word_count, "word"), counted(len(different.pages), "page")
     found.figures["words_differ"] = str(different.word_count)
     networks = "" if compared.networks_summary is None else f"{compared.networks_summary}, "
     if different.same:

@@ -16,6 +16,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final, TypeAlias
 
+from fatektool.counts import counted
 from fatektool.ladder.circuit.nodes import Block, Box, Circuit, Leaf, Line, Node, Parallel, Series
 from fatektool.ladder.circuit.pins import pins_of
 from fatektool.ladder.circuit.roles import Role
@@ -262,7 +263,7 @@ class _Reader:
         pins = pins_of(leaf.instruction.form)
         count = len(self._stack)
         if pins is not None and len(pins.inputs) != count:
-            has = f"{len(pins.inputs)} input{'s' if len(pins.inputs) > 1 else ''}"
+            has = counted(len(pins.inputs), "input")
             raise _Unclear(f"{_text(leaf)} has {has}, and {_lines(count)} to it")
         first, *more = self._stack
         self._box = _DraftBox(leaf, more, first.level)
@@ -305,8 +306,8 @@ def _text(leaf: Leaf) -> str:
 
 
 def _blocks(count: int) -> str:
-    return "a block is" if count == 1 else f"{count} blocks are"
+    return counted(count, "block is", "blocks are")
 
 
 def _lines(count: int) -> str:
-    return "1 line leads" if count == 1 else f"{count} lines lead"
+    return counted(count, "line leads", "lines lead")

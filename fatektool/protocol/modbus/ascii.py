@@ -12,6 +12,7 @@ from __future__ import annotations
 from binascii import unhexlify
 from typing import Final
 
+from fatektool.counts import counted
 from fatektool.errors import FrameError
 from fatektool.protocol.codec import Frame
 from fatektool.protocol.modbus.codec import ModbusCodec
@@ -55,7 +56,7 @@ def parse_ascii(raw: bytes) -> Frame:
     if not MIN_ASCII <= len(raw) <= MAX_ASCII or len(digits) % 2 or digits.translate(None, _HEX_DIGITS):
         raise FrameError(
             f"no frame: expected {MIN_ASCII} to {MAX_ASCII} bytes of capital hex digits in pairs, "
-            f"got {len(raw)} bytes",
+            f"got {counted(len(raw), 'byte')}",
             raw=raw,
         )
     content = unhexlify(digits)

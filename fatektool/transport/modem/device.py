@@ -22,6 +22,7 @@ from math import ceil
 from typing import TYPE_CHECKING, Final
 
 from fatektool.callbacks import ignore
+from fatektool.counts import counted
 from fatektool.errors import LineError, TransportClosed, TransportError
 from fatektool.transport.base import Transport
 from fatektool.transport.modem.commands import ModemCommands, Result
@@ -155,7 +156,7 @@ class ModemTransport(Transport):
 
     def _no_connection(self, outcomes: list[Result | None]) -> LineError:
         got = [outcome.value if outcome else f"nothing for {self._call.wait_s:g} s" for outcome in outcomes]
-        count = f"{len(outcomes)} {'try' if len(outcomes) == 1 else 'tries'}"
+        count = counted(len(outcomes), "try", "tries")
         return LineError(
             f"{self._port.name}: no connection to {self._call.number} in {count}: the modem reported "
             f"{', '.join(got)}",

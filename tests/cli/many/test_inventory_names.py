@@ -72,7 +72,7 @@ def test_an_option_goes_before_the_inventory_even_if_it_is_the_default(cli: Cli)
     assert "no answer from station 1" in done.err
     assert "in 1 try and 4 other requests, 2." in done.err
     done = cli("status", "-p", "press", "-s", "1")
-    assert re.search(r"in 1 (try|request), 0\.\d s in all", done.err)
+    assert re.search(r"in 1 (try|request), 0\.\d s in total", done.err)
 
 
 def test_another_protocol_takes_its_own_format(cli: Cli) -> None:

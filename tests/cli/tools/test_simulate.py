@@ -97,7 +97,7 @@ def test_faults_strike(cli: Cli) -> None:
         done = cli("status", "-p", door, "--retries", 1, "--timeout", 0.1)
         assert done.code == 3
         assert (
-            "s in all: nothing received; is the PLC on, its station right? A FATEK Ethernet module"
+            "s in total: nothing received; check that the PLC is on, and --station. A FATEK Ethernet module"
             in one_line(done.err)
         )
 

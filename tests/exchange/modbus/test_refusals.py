@@ -143,7 +143,7 @@ def test_who_stays_busy_is_told_as_busy(codec: ModbusCodec) -> None:
     with pytest.raises(PlcBusy) as caught:
         read_elements(plc, [R105, Element("R", 106)])
     assert caught.value.exit_code == 4
-    assert "exception 06, the PLC is busy; still so in 4 tries, 3.5 s in all" in caught.value.message
+    assert "exception 06, the PLC is busy, also in 4 tries, 3.5 s in total" in caught.value.message
     assert "--retries 3" in str(caught.value.hint)
     assert len(slave.asked) == 4  # nothing is taken apart: it is no refusal of an element
 
@@ -185,7 +185,7 @@ def test_what_a_gateway_says_is_told_with_advice_for_gateways(
     assert str(caught.value.hint).startswith(hint)
     assert "shield" not in str(caught.value)
     tries = "in 4 tries, 0.0 s" if codec is TCP else "in 1 try and 4 other requests, 0.1 s"
-    assert f"{tries} in all" in caught.value.message  # none of them was waited for
+    assert f"{tries} in total" in caught.value.message  # none of them was waited for
 
 
 def test_a_write_that_did_not_leave_the_gateway_is_not_looked_for() -> None:
@@ -194,7 +194,7 @@ def test_a_write_that_did_not_leave_the_gateway_is_not_looked_for() -> None:
         with pytest.raises(NoAnswer) as caught:
             linked(slave, TCP).ask(TO_R105)
         assert {asked[0] for asked in slave.asked} == functions
-        assert ("whether the PLC took it is not known" in caught.value.message) == (code == 11)
+        assert ("it is not known whether the PLC executed it" in caught.value.message) == (code == 11)
         assert f"the gateway says: {GATEWAY[code]} (exception {code:02X})" in caught.value.message
         assert "nothing received" not in caught.value.message
         assert "gateway" in str(caught.value.hint)
@@ -207,7 +207,7 @@ def test_answers_with_another_number_are_told_as_such() -> None:
     peer = Peer(lambda request, _: [(0.01, b"\x12\x34" + request[2:4] + bytes.fromhex("0005 01 03 02 0007"))])
     with pytest.raises(NoAnswer) as caught:
         linked(peer, TCP).ask(FROM_R105)
-    assert "received an answer with transaction number 1234, expected 0004, that of the request" in str(
+    assert "received an answer with transaction number 1234, expected 0004, as in the request" in str(
         caught.value
     )
     assert "must repeat the number" in str(caught.value.hint)

@@ -196,7 +196,7 @@ WRONG = [
     ("md1", "0x01 ", "0x101 ", "mode: expected 0 to 255, got 257"),
     ("md1", '"02 4F 4B 03"', '"02 4F xx 03"', "data: expected bytes in hex such as .*, got 'xx'"),
     ("md1", '"02 4F 4B 03"', '"12345"', "data: expected bytes in hex such as .*, got '12345'"),
-    ("md1", "mode", "length = 3\nmode", "length: expected that of the data, 4 bytes, got 3"),
+    ("md1", "mode", "length = 3\nmode", "length: expected 4, as the data has, got 3"),
     ("md1", "mode", "station = 3\nmode", "unknown key 'station': expected one of kind, mode"),
 ]
 

@@ -11,8 +11,8 @@ from fatektool.cli.many.history.documents import (
 )
 from fatektool.cli.many.history.options import history_option
 from fatektool.cli.shared.options import voice_options
+from fatektool.counts import counted
 from fatektool.history.checking import check
-from fatektool.history.messages import count
 from fatektool.history.revisions import SHORT
 
 if TYPE_CHECKING:
@@ -39,10 +39,10 @@ def check_command(folder: Path, voice: Voice) -> int:
 
 def _lines(found: HistoryCheck) -> Iterator[str]:
     """What was checked, and what is damaged."""
-    commits, programs = count(found.commits, "commit"), count(found.programs, "program")
-    looked = f"{commits}, {programs}, {count(len(found.names), 'PLC')} now"
+    commits, programs = counted(found.commits, "commit"), counted(found.programs, "program")
+    looked = f"{commits}, {programs}, {counted(len(found.names), 'PLC')} now"
     yield (
-        f"damaged: {count(len(found.faults), 'fault')} in {looked}"
+        f"damaged: {counted(len(found.faults), 'fault')} in {looked}"
         if found.faults
         else f"no damage: {looked}"
     )

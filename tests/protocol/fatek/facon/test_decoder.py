@@ -144,7 +144,7 @@ def test_too_short(raw: bytes) -> None:
 
 @pytest.mark.parametrize("raw", [b"", b"0140C7", b"\x020140C7", b"0140C7\x03", b"\x02" * 9, b"x" * 600])
 def test_parse_frame_wants_a_whole_frame(raw: bytes) -> None:
-    with pytest.raises(FrameError, match="no frame: expected STX"):
+    with pytest.raises(FrameError, match="invalid frame: expected STX"):
         parse_frame(raw)
 
 
