@@ -31,7 +31,7 @@ class PlcEntry:
 
     Attributes:
         name: its name.
-        address: where it is and how to ask it; a path in it is relative to the current folder, or absolute.
+        address: of the PLC; a path in it is relative to the current folder, or absolute.
         tags: words for ``--select``.
         spec: the snapshot specification; None if there is none.
         reference: a backup or project with the expected program; None if there is none.

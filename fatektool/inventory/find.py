@@ -1,4 +1,4 @@
-"""Find the file of the inventory, and tell names of PLCs from ports."""
+"""Find the file of the inventory, and distinguish names of PLCs from ports."""
 
 from __future__ import annotations
 

@@ -1,16 +1,16 @@
-"""What the paper allows in a row of a communication table, and the result code where it does not.
+"""Checks of the rows of a communication table against the paper, with the result code of each fault.
 
 FBs link paper: the ranges are at the operand SR of each mode, the codes at its operand WR::
 
-    2 length   3 command   4 data type   5 reference   6 types that do not go together   A no answer
+    2 length   3 command   4 data type   5 reference   6 incompatible types   A no answer
 
 Where the paper is silent:
 
-* It gives no code for a wrong station: such a fault has none. Reading from station 0 gets A, as no PLC
+* It gives no code for a wrong station: such a fault has none. Reading from station 0 has A, because no PLC
   answers a broadcast.
-* CLINK's code 3 is said to be for commands 'greater than 2'; command 0 is no command either (M-BUS says so),
-  so it is 3 too.
-* Code 5 is taken to be for the whole stretch: the data must be within the references that the paper lists.
+* CLINK's code 3 is described for commands 'greater than 2'; command 0 is invalid too (as M-BUS says), so it
+  also has 3.
+* Code 5 is used for the whole range: all data must be within the references that the paper lists.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def _command(number: int, command: int, known: Mapping[int, str]) -> Iterator[Fa
 
 def _broadcast_read(number: int, row: Transaction) -> Iterator[Fault]:
     if row.station == 0 and row.command == READ:
-        yield Fault(number, 0xA, "station 0 is all of them, and none answers: it cannot be read from")
+        yield Fault(number, 0xA, "station 0 is a broadcast, which no PLC answers: it cannot be read")
 
 
 def _length(number: int, length: int, most: int) -> Iterator[Fault]:
@@ -116,7 +116,7 @@ def _operand(
         end = operand.reference + max(length - 1, 0) * kind.stride
         if end > kind.last:
             yield Fault(
-                number, 5, f"{written}: {length} of them end at {end}, past {kind.written(kind.last)}"
+                number, 5, f"{written}: {length} from there end at {end}, past {kind.written(kind.last)}"
             )
 
 

@@ -1,8 +1,8 @@
-"""Result codes of the communication instructions in words: one table a kind.
+"""The meanings of the result codes of communication instructions: one table for each kind.
 
 FBs link paper, chapter 13, "Result code" under operand WR of each mode. A code that a mode does not list is
-not explained by another mode's list. 0 of MD3 says that the table's format is correct, and nothing of the
-stations: what goes wrong on a running high-speed link is in R4058 and R4059 (section 13.1.2, MD3).
+not explained by another mode's list. 0 of MD3 means that the table's format is correct; it does not include
+the stations: errors of a running high-speed link are in R4058 and R4059 (section 13.1.2, MD3).
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
 
 class Words(NamedTuple):
-    """A code in words.
+    """The meaning of a code.
 
     Attributes:
-        meaning: what the paper says of it.
-        next_step: what to do; None where there is nothing to do.
+        meaning: as in the paper.
+        next_step: what to do; None if there is nothing to do.
     """
 
     meaning: str
@@ -28,11 +28,11 @@ class Words(NamedTuple):
 
 
 _SUCCESS: Final = Words("the transaction was successful", None)
-_ROW: Final = "read the table with 'fatektool link table show': the transaction's row says what is wrong"
+_ROW: Final = "read the table with 'fatektool link table show': the row of the transaction shows the fault"
 _COMMAND: Final = Words("command code error", _ROW)
 _DATA_TYPE: Final = Words("data type error", _ROW)
 _REFERENCE: Final = Words("reference number error", _ROW)
-_TOGETHER: Final = Words("the data types of master and slave do not go together", _ROW)
+_TOGETHER: Final = Words("the data types of master and slave are incompatible", _ROW)
 _SILENCE: Final = Words(
     "no answer from the station within the time-out",
     "check that the station is on, its number and its line parameters, and the wiring; 'fatektool link "
@@ -49,7 +49,7 @@ CODES: Final[Mapping[TableKind, Mapping[int, Words]]] = {
         0x5: _REFERENCE,
         0x6: _TOGETHER,
         0xA: _SILENCE,
-        0xB: Words("communication error: damaged data came back", _LINE),
+        0xB: Words("communication error: damaged data received", _LINE),
     },
     TableKind.MD1: {
         0x0: _SUCCESS,
@@ -59,20 +59,20 @@ CODES: Final[Mapping[TableKind, Mapping[int, Words]]] = {
             "check that the device is on, its line parameters, the wiring, the start and end code in SR+1; "
             "'fatektool link ports' shows the time-out, which must be longer than the device takes",
         ),
-        0xB: Words("communication error: damaged data came back", _LINE),
+        0xB: Words("communication error: damaged data received", _LINE),
     },
     TableKind.MD2: {
         0x0: _SUCCESS,
         0x2: Words("length error: 0, or more than 511", "set the length of the reply in SR+2 to 1 to 511"),
         0xA: Words(
-            "this PLC's own ladder program did not give its reply within the time-out span",
-            "look at the ladder program: it must fill in the reply, then its length (SR+2), in time; "
+            "the ladder program of this PLC did not prepare its reply within the time-out",
+            "check the ladder program: it must write the reply, then its length (SR+2), in time; "
             "'fatektool link ports' shows the time-out, which must be longer than the program takes",
         ),
-        0xB: Words("communication error: damaged data was received", _LINE),
+        0xB: Words("communication error: damaged data received", _LINE),
     },
     TableKind.MD3: {
-        0x0: Words("the table's format is correct; this says nothing of the stations", None),
+        0x0: Words("the table's format is correct; the stations are not checked", None),
         0x2: Words("length error: 0, or more than 32", _ROW),
         0x3: Words("command code error: it is not 4", _ROW),
         0x4: Words("data type error: it is neither 12 nor 13", _ROW),
@@ -88,11 +88,11 @@ CODES: Final[Mapping[TableKind, Mapping[int, Words]]] = {
         0x7: Words("port error: not port 1 to 4", "give the instruction a port from 1 to 4 (operand Pt)"),
         0x8: Words(
             "invalid communication table",
-            "check that operand SR is where the table begins: SR+0 is A550H, the high byte of SR+1 is 07H",
+            "check that operand SR is the start of the table: SR+0 is A550H, the high byte of SR+1 is 07H",
         ),
         0xA: _SILENCE,
         0xB: Words(
-            "communication error: damaged data, or a Modbus exception, came back",
+            "communication error: damaged data, or a Modbus exception, received",
             f"{_LINE}; check that the slave has these references",
         ),
     },
@@ -105,17 +105,17 @@ NONE_YET: Final = "no transaction yet: these words are all 0"
 
 
 def meaning(code: int, kinds: Collection[TableKind]) -> str:
-    """A result code in words.
+    """The meaning of a result code.
 
     Args:
         code: the result code.
-        kinds: what the instruction may be. Where they read the code differently, each reading is given.
+        kinds: the possible instructions. If the code differs between them, each meaning is returned.
     """
     return _joined(code, kinds, 0) or UNLISTED
 
 
 def next_step(code: int, kinds: Collection[TableKind]) -> str | None:
-    """What to do about a code; None where there is nothing to do, or nothing known."""
+    """What to do about a code; None if there is nothing to do, or nothing known."""
     return _joined(code, kinds, 1)
 
 

@@ -1,4 +1,4 @@
-"""The kinds of communication instruction, and where their operands may point.
+"""The kinds of communication instruction, and the valid areas of their operands.
 
 FBs link paper, sections 13.1.2 (CLINK, FUN151: MD0 to MD3) and 13.2.2 (M-BUS, FUN150); the operand tables
 there give HR, ROR and DR for both SR and WR.
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     from fatektool.protocol.elements import Element
 
 OPERAND_AREAS: Final = (("R", 0, 3839), ("R", 5000, 8071), ("D", 0, 3999))
-"""Where operands SR and WR may point: HR, ROR, DR."""
+"""The valid areas of operands SR and WR: HR, ROR, DR."""
 
 
 class TableKind(Enum):
-    """Which instruction and mode a table, or the registers from WR on, are for."""
+    """The instruction and mode of a table, or of the registers from WR on."""
 
     MD0 = "md0"
     MD1 = "md1"
@@ -27,7 +27,7 @@ class TableKind(Enum):
 
     @property
     def head_words(self) -> int:
-        """How many words it takes to know how long the table is."""
+        """The number of words that contain the length of the table."""
         return {TableKind.MD0: 1, TableKind.MD3: 1, TableKind.MBUS: 2}.get(self, 3)
 
     @property
@@ -37,12 +37,12 @@ class TableKind(Enum):
 
 
 def misplaced(operand: str, start: Element, count: int) -> str | None:
-    """What is wrong with the place that an operand names; None if nothing is.
+    """What is wrong with the registers of an operand; None if nothing is.
 
     Args:
         operand: ``SR`` or ``WR``, for the message.
-        start: where it points.
-        count: how many registers are used from there on.
+        start: the first register.
+        count: the number of registers from there.
     """
     for symbol, first, last in OPERAND_AREAS:
         if start.symbol == symbol and first <= start.address <= last:

@@ -1,11 +1,11 @@
-"""Tables of MD1 and MD2: messages of a protocol of the program's own, a byte a word.
+"""Tables of MD1 and MD2: messages of a user-defined protocol, one byte in each word.
 
 FBs link paper, section 13.1.2, MD1 (sender) and MD2 (receiver)::
 
     SR+0   mode, low byte        bit 0: MD1 receives after sending, MD2 replies after receiving
-                                 bit 7: received bytes are taken even with errors
-    SR+1   start code | end code of what is received; 00 for none
-    SR+2   length, 1 to 511      in MD2 0 until the program has filled its reply in
+                                 bit 7: received bytes are accepted even with errors
+    SR+1   start code | end code of received messages; 00 for none
+    SR+2   length, 1 to 511      in MD2 0 until the program has written its reply
     SR+3…  the bytes, in the low byte of a word each
 
 The 'OK' of the loop-back test in the paper: 0001 0203 0004 0002 004F 004B 0003.
@@ -44,11 +44,11 @@ class MessageTable:
     Attributes:
         receiver: True for MD2.
         mode: the low byte of SR+0.
-        start_code: of what is received; 0 for none.
-        end_code: of what is received; 0 for none.
-        data: a word for each byte; the PLC takes its low byte.
-        length: SR+2; None for as many as ``data`` has, and no other unless it is past 511.
-        mode_high: the high byte of SR+0, which the PLC does not take.
+        start_code: of received messages; 0 for none.
+        end_code: of received messages; 0 for none.
+        data: one word for each byte; the PLC uses the low byte.
+        length: SR+2; None for that of ``data``. Another length is allowed only above 511.
+        mode_high: the high byte of SR+0, which the PLC ignores.
 
     Raises:
         UsageError: a value does not fit its byte or word, or the length is not that of the data.
@@ -82,28 +82,28 @@ class MessageTable:
 
     @property
     def message(self) -> bytes:
-        """What is sent: the low bytes."""
+        """The bytes to send: the low bytes."""
         return bytes(word & 0xFF for word in self.data)
 
     @property
     def modes(self) -> dict[int, str]:
-        """The modes that there are, in words."""
+        """The valid modes, with their meaning."""
         return RECEIVER_MODES if self.receiver else SENDER_MODES
 
     def to_words(self) -> tuple[int, ...]:
-        """The table as the registers hold it from SR on."""
+        """The contents of the registers from SR on."""
         codes = self.start_code << 8 | self.end_code
         return self.mode_high << 8 | self.mode, codes, self.message_length, *self.data
 
     @classmethod
     def parse(cls, words: Sequence[int], *, receiver: bool) -> MessageTable:
-        """Take the words apart."""
+        """Parse the words."""
         mode, codes, length, *data = words
         own = None if length == len(data) else length
         return cls(receiver, mode & 0xFF, codes >> 8, codes & 0xFF, tuple(data), own, mode >> 8)
 
     def faults(self) -> list[Fault]:
-        """What the paper does not allow."""
+        """Everything that the paper does not allow."""
         found = []
         if self.mode not in self.modes:
             known = ", ".join(f"{code:02X}" for code in self.modes)

@@ -1,4 +1,4 @@
-"""What a row of a communication table points at: a type of data and a reference, as two words.
+"""Operands in a row of a communication table: a type of data and a reference, as two words.
 
 ::
 
@@ -7,7 +7,7 @@
     a type that no paper lists         20:100    type 20, reference 100
 
 FBs link paper, section 13.1 (data types of MD0 and MD3) and 13.2 (those of M-BUS). The tables there call the
-registers of timers and counters TR and CR; everywhere else they are RT and RC. Both are understood.
+registers of timers and counters TR and CR; everywhere else they are RT and RC. Both are accepted.
 """
 
 from __future__ import annotations
@@ -24,15 +24,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class DataType:
-    """A type of data that a table can name.
+    """A type of data in a table.
 
     Attributes:
-        symbol: as the paper has it; the first digit of the reference for a Modbus slave's.
+        symbol: as in the paper; for a Modbus slave the first digit of the reference.
         first: the smallest reference.
         last: the largest reference.
         discrete: True for single discretes, False for words.
         step: a reference is a multiple of this.
-        stride: how far apart consecutive data are.
+        stride: the distance between consecutive data.
     """
 
     symbol: str
@@ -43,7 +43,7 @@ class DataType:
     stride: int = 1
 
     def written(self, reference: int) -> str:
-        """A reference of this type as people write it."""
+        """A reference of this type as text."""
         return f"{self.symbol}{reference:05}" if self.symbol.isdecimal() else f"{self.symbol}{reference}"
 
 
@@ -103,10 +103,10 @@ class TableOperand:
 
     Attributes:
         type: the code of the type, 0 to 255.
-        reference: where the data begin, 0 to 65535.
+        reference: of the first data, 0 to 65535.
 
     Raises:
-        UsageError: one of them does not fit its word.
+        UsageError: one of them does not fit into its word.
     """
 
     type: int
@@ -117,18 +117,18 @@ class TableOperand:
         require_range("reference", self.reference, 0xFFFF)
 
     def written(self, types: Mapping[int, DataType]) -> str:
-        """As people write it, by these types; ``20:100`` for a type that is none of them."""
+        """As text, with these types; ``20:100`` for an unknown type."""
         found = types.get(self.type)
         return f"{self.type}:{self.reference}" if found is None else found.written(self.reference)
 
     @classmethod
     def parse(cls, text: str, types: Mapping[int, DataType]) -> TableOperand:
-        """Read an operand as people write it, by these types.
+        """Parse an operand, with these types.
 
-        The reference need not be in the type's range: that is for the check to say.
+        The reference may be outside the type's range: the checks report that.
 
         Raises:
-            UsageError: it is none.
+            UsageError: it is not an operand.
         """
         written = text.strip()
         coded = _CODED.fullmatch(written)
@@ -150,10 +150,10 @@ class TableOperand:
 
 
 def require_range(name: str, value: int, most: int) -> None:
-    """Check that a value fits its place.
+    """Check that a value is from 0 to ``most``.
 
     Raises:
-        UsageError: it does not.
+        UsageError: it is not.
     """
     if not 0 <= value <= most:
         raise UsageError(f"{name}: expected 0 to {most}, got {value}")

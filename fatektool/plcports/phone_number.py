@@ -1,17 +1,18 @@
 """The phone number that a PLC's modem dials: R4140 to R4145 and back.
 
-Six words, a character a nibble, the low nibble of a word first (FBs link paper, section 13.1, modem)::
+Six words, one character in each nibble, the low nibble of a word first (FBs link paper, section 13.1,
+modem)::
 
     02-28082192     R4140=8220H R4141=1280H R4142=0E29H      0 2 2 8 · 0 8 2 1 · 9 2 E
     nibbles of 8220H from the low end: 0 2 2 8
 
-    0 to 9    the digit              as people write it: itself
+    0 to 9    the digit              as text: itself
     A         pause                  ,
     B         hash                   #
     C         star                   *
     E         the end                -
 
-The paper gives D and F no meaning. What follows the end means nothing to the PLC.
+The paper gives D and F no meaning. The PLC ignores what follows the end.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 PHONE_WORDS: Final = 6
 """R4140 to R4145."""
 MAX_PHONE: Final = 4 * PHONE_WORDS - 1
-"""The longest number, as its end takes a nibble too."""
+"""The longest number; the end needs one nibble too."""
 
 _WRITTEN: Final = "0123456789,#*"
 _END: Final = 0xE
@@ -35,7 +36,7 @@ _GROUPING: Final = re.compile(r"[ ()./-]")
 
 
 def parse_phone_number(words: Sequence[int]) -> str:
-    """The number that the registers hold.
+    """The number in the registers.
 
     Args:
         words: R4140 to R4145, unsigned.
@@ -44,7 +45,7 @@ def parse_phone_number(words: Sequence[int]) -> str:
         Digits, ``,`` for a pause, ``#`` and ``*``; empty if the first nibble ends it.
 
     Raises:
-        DataError: a nibble that means nothing, or no end.
+        DataError: an invalid nibble, or no end.
     """
     number = ""
     for place in range(4 * len(words)):
@@ -53,22 +54,22 @@ def parse_phone_number(words: Sequence[int]) -> str:
             return number
         if nibble >= len(_WRITTEN):
             raise DataError(
-                f"no phone number: nibble {place + 1} is {nibble:X}: expected a digit, A (pause), B (#), "
-                f"C (*) or E (end)",
+                f"no phone number: nibble {place + 1}: expected a digit, A (pause), B (#), C (*) or E (end), "
+                f"got {nibble:X}",
             )
         number += _WRITTEN[nibble]
     raise DataError(f"no phone number: no end (nibble E) in {4 * len(words)} nibbles")
 
 
 def phone_number_words(number: str) -> tuple[int, ...]:
-    """A number as people write it, as the six words R4140 to R4145.
+    """A phone number as the six words R4140 to R4145.
 
     Args:
-        number: digits, ``,`` for a pause of about 2 s, ``#`` and ``*``. Blanks and ``-().`` and ``/`` between
-            them are left out.
+        number: digits, ``,`` for a pause of about 2 s, ``#`` and ``*``. Spaces, ``-().`` and ``/`` between
+            them are ignored.
 
     Raises:
-        UsageError: another character, nothing to dial, or more than 23 characters.
+        UsageError: another character, an empty number, or more than 23 characters.
     """
     written = _GROUPING.sub("", number)
     strange = next((character for character in written if character not in _WRITTEN), None)

@@ -1,4 +1,4 @@
-"""The registers of the communication ports 1 to 4, in words.
+"""The registers of the communication ports 1 to 4, and their meaning.
 
 FBs link paper, sections 13.1.2 (interface signals) and 13.2 (R4047)::
 
@@ -15,8 +15,8 @@ FBs link paper, sections 13.1.2 (interface signals) and 13.2 (R4047)::
     R4047 = 55xxH   b1 to b4: the port is a Modbus RTU slave, else FATEK
     R4047 = 56xxH   two bits a port from b0 on: 0, 1 FATEK, 2 Modbus RTU, 3 Modbus ASCII; from OS 4.24 on
 
-The bits of the communication parameters are in another chapter, which this paper refers to: they are shown
-as they are. TX delay is in 0.01 s always. A PLC without D4043 has no other unit than 0.01 s.
+The bits of the communication parameters are in another chapter of the manual: they are shown as numbers. The
+unit of TX delay is always 0.01 s. Without D4043, the unit of RX time-out is 0.01 s too.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _PROTOCOLS: Final = (FATEK, FATEK, RTU, ASCII)
 
 @dataclass(frozen=True, slots=True)
 class PortElements:
-    """Where the settings of one port are; ``result`` is the first of two."""
+    """The elements with the settings of one port; ``result`` is the first of two."""
 
     free: str
     finished: str
@@ -58,20 +58,20 @@ COMMON_ELEMENTS: Final = ("R4047", "D4043", "D4044", "M1956", "R4148")
 
 @dataclass(frozen=True, slots=True)
 class Port:
-    """One port. What the PLC does not have, or what hangs on it, is None.
+    """One port. Values that the PLC does not have, or that depend on such, are None.
 
     Attributes:
         number: 1 to 4.
-        free: False while an instruction has it.
+        free: False while an instruction uses it.
         finished: the last transaction of the table is done.
         protocol: its protocol as a slave.
-        parameters: the register as it is.
+        parameters: the register as a number.
         tx_delay_s: between two transactions, in seconds.
         rx_timeout_s: how long it waits for an answer, in seconds.
         rx_timeout_unit_s: 0.01 or 0.1.
-        minimum_scans: that a transaction takes: 2 or 3.
+        minimum_scans: scans that a transaction takes at least: 2 or 3.
         continuous: one edge starts all transactions.
-        last_result: of the last transaction; the PLC keeps it for continuous execution alone, else None.
+        last_result: of the last transaction; the PLC keeps it only for continuous execution, else None.
     """
 
     number: int
@@ -93,7 +93,7 @@ def slave_protocol(r4047: int, port: int, *, two_bits: bool = True) -> str:
     Args:
         r4047: the register.
         port: 1 to 4; port 0 is always FATEK.
-        two_bits: False for an OS that is known not to have 56xxH: there it is one of the other values.
+        two_bits: False for an OS that is known not to have 56xxH: then it is one of the other values.
     """
     match r4047 >> 8:
         case 0x55:
@@ -110,7 +110,7 @@ def timeout_unit_s(d4043: int, port: int) -> float:
 
 
 def minimum_scans(d4044: int, port: int) -> int:
-    """How many scans of the program a transaction takes at least."""
+    """The scans of the program that a transaction takes at least."""
     return 2 if d4044 >> 8 == 0 and d4044 >> port & 1 else 3
 
 
@@ -120,7 +120,7 @@ def is_continuous(d4044: int, port: int) -> bool:
 
 
 def port_elements() -> tuple[str, ...]:
-    """All that is read of the ports."""
+    """All elements that are read for the ports."""
     found = list(COMMON_ELEMENTS)
     for elements in PORT_ELEMENTS.values():
         found += [elements.free, elements.finished, elements.parameters, elements.times]
@@ -132,7 +132,7 @@ def decode_port(values: Mapping[str, int], number: int, *, two_bits: bool = True
     """One port.
 
     Args:
-        values: raw, by element; what the PLC refused is missing.
+        values: raw, by element; elements that the PLC refused are missing.
         number: 1 to 4.
         two_bits: as for ``slave_protocol``.
     """
@@ -164,5 +164,5 @@ def flag(values: Mapping[str, int], name: str) -> bool | None:
 
 
 def hundredths(count: int) -> float:
-    """So many 0.01 s, in seconds."""
+    """A number of 0.01 s, in seconds."""
     return round(count / 100, 2)

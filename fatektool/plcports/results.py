@@ -1,4 +1,4 @@
-"""What a communication instruction says of its last transaction: result codes, and the words WR+0 to WR+7.
+"""The result of a communication instruction's last transaction: result code, and the words WR+0 to WR+7.
 
 FBs link paper, sections 13.1.2 (CLINK, FUN151) and 13.2.2 (M-BUS, FUN150)::
 
@@ -6,13 +6,14 @@ FBs link paper, sections 13.1.2 (CLINK, FUN151) and 13.2.2 (M-BUS, FUN150)::
     WR+0    result code      number of the transaction, from 0
     WR+1    station          command on the wire: 40 44 45 46 47H of FACON, 01 to 10H of Modbus
     WR+4    b0 waiting for the port   b4 not the first run   b12 ACT   b13 ERR   b14 DN
-    others  the instruction's own
+    others  used by the instruction itself
 
-That is MD0 and M-BUS. MD1 and MD2 have the result code in WR+0, and b0, b12, b13 and b14 of WR+4; WR+8 is
-how many bytes they received, WR+9 on are the bytes. MD3 has the result code alone, in WR+0. The paper does
-not say in which byte: here it is the high one as in all other modes, or the low one where the high one is 0
+This is for MD0 and M-BUS. MD1 and MD2 have the result code in WR+0, and b0, b12, b13 and b14 of WR+4; WR+8 is
+the number of received bytes, which follow from WR+9 on. MD3 has only the result code, in WR+0. The paper does
+not say in which byte: here it is the high byte as in all other modes, or the low byte if the high one is 0
 [E:md3-code-byte].
-The results of a port in D4045 to D4052 are WR+0 and WR+1 again. What the codes mean: ``link_codes``.
+The results of a port in D4045 to D4052 are copies of WR+0 and WR+1. The meanings of the codes are in
+``codes``.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 WR_WORDS: Final = 8
-"""The words that an instruction controls from WR on."""
+"""The number of words that an instruction uses from WR on."""
 _BITS: Final = (0, 4, 12, 13, 14)
 _MESSAGE_BITS: Final = (0, 12, 13, 14)
 _BITS_OF: Final = {TableKind.MD1: _MESSAGE_BITS, TableKind.MD2: _MESSAGE_BITS, TableKind.MD3: ()}
@@ -57,8 +58,8 @@ class Fault:
 
     Attributes:
         row: the transaction, from 0 as WR+0 counts; None for the table as a whole.
-        code: the result code that the instruction would give; None where the paper names none.
-        reason: what, expected and found.
+        code: the result code that the instruction would have; None if the paper has none.
+        reason: what is wrong, expected and got.
     """
 
     row: int | None
@@ -72,9 +73,9 @@ class TransactionResult:
 
     Attributes:
         code: result code, 0 for success.
-        transaction: which row, from 0.
+        transaction: the number of the row, from 0.
         station: the slave of the transaction.
-        command: what went over the wire.
+        command: as sent on the line.
     """
 
     code: int
@@ -84,7 +85,7 @@ class TransactionResult:
 
     @classmethod
     def parse(cls, wr0: int, wr1: int) -> TransactionResult:
-        """Take the two words apart."""
+        """Parse the two words."""
         return cls(wr0 >> 8, wr0 & 0xFF, wr1 >> 8, wr1 & 0xFF)
 
     def to_words(self) -> tuple[int, int]:
@@ -93,14 +94,14 @@ class TransactionResult:
 
     @property
     def none_yet(self) -> bool:
-        """Nothing but zeros: a transaction has a command, also where it goes to all stations."""
+        """True if all is 0: a transaction always has a command, also with station 0."""
         return self.to_words() == (0, 0)
 
     def command_meaning(self, kind: TableKind | None = None) -> str | None:
-        """The command in words; None for a code that is no command of this kind of instruction.
+        """The meaning of the command; None if this kind of instruction has no such command.
 
         Args:
-            kind: of the instruction; None where it is not known.
+            kind: of the instruction; None if not known.
         """
         commands = _FACON_COMMANDS | _MODBUS_COMMANDS if kind is None else _COMMANDS_OF.get(kind, {})
         return commands.get(self.command)
@@ -108,11 +109,11 @@ class TransactionResult:
 
 @dataclass(frozen=True, slots=True)
 class Operation:
-    """WR+4: the instruction's progress. None for what the mode does not have.
+    """WR+4: the instruction's progress. None for bits that the mode does not have.
 
     Attributes:
-        waiting: another instruction has the port, this one waits for it.
-        repeated: it is not the first time that the instruction runs.
+        waiting: another instruction uses the port, and this one waits for it.
+        repeated: not the first run of the instruction.
         active: output ACT.
         error: output ERR.
         done: output DN.
@@ -126,11 +127,11 @@ class Operation:
 
     @classmethod
     def parse(cls, wr4: int, kind: TableKind | None = None) -> Operation:
-        """Take the word apart.
+        """Parse the word.
 
         Args:
             wr4: the word.
-            kind: of the instruction; None where it is not known, then every bit is shown.
+            kind: of the instruction; None if not known, then every bit is shown.
         """
         bits = _BITS if kind is None else _BITS_OF.get(kind, _BITS)
         return cls(*(bool(wr4 >> bit & 1) if bit in bits else None for bit in _BITS))
@@ -138,11 +139,11 @@ class Operation:
 
 @dataclass(frozen=True, slots=True)
 class InstructionState:
-    """All that WR says.
+    """All state in the registers from WR on.
 
     Attributes:
-        words: WR+0 to WR+7 as they are.
-        result: of the last transaction. Of MD1 to MD3 only its code holds.
+        words: WR+0 to WR+7 as numbers.
+        result: of the last transaction. For MD1 to MD3 only its code is valid.
         operation: the instruction's progress.
     """
 
@@ -152,11 +153,11 @@ class InstructionState:
 
     @classmethod
     def parse(cls, words: Sequence[int], kind: TableKind | None = None) -> InstructionState:
-        """Take WR+0 to WR+7 apart.
+        """Parse WR+0 to WR+7.
 
         Args:
             words: the eight words.
-            kind: of the instruction; None where it is not known.
+            kind: of the instruction; None if not known.
         """
         result = TransactionResult.parse(words[0], words[1])
         if kind is TableKind.MD3 and result.code == 0:

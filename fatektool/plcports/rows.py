@@ -6,8 +6,8 @@ FBs link paper, sections 13.1.2 (MD0, MD3) and 13.2.2 (M-BUS)::
     MD0, M-BUS  station  command  length  master type  master reference slave type  slave reference
     MD3         station  command  length  type         reference        reserved    reserved
 
-Of all words but the references (and the reserved ones) the PLC takes the low byte. What is in the high
-byte is kept in ``high_bytes``, so that a table goes back as it came.
+The PLC uses the low byte of all words, except the references (and the reserved words). The high bytes are
+kept in ``high_bytes``, so that a table is written back exactly as it was read.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ def _require(row: Transaction | SharedBlock, high_bytes: int) -> None:
         require_range(name, getattr(row, name), 255)
     for value in row.high_bytes:
         require_range("high_bytes", value, 255)
-    require_range("high_bytes: how many", len(row.high_bytes), high_bytes)
-    require_range("high_bytes: how many are missing", high_bytes - len(row.high_bytes), 0)
+    require_range("high_bytes: number", len(row.high_bytes), high_bytes)
+    require_range("high_bytes: number missing", high_bytes - len(row.high_bytes), 0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,13 +41,13 @@ class Transaction:
     Attributes:
         station: of the slave; 0 writes to all of them.
         command: 1 read, 2 write, in M-BUS 3 write single.
-        length: how many discretes, registers or words.
-        master: where the data are in this PLC.
-        slave: where they are in the slave.
+        length: the number of discretes, registers or words.
+        master: the data in this PLC.
+        slave: the data in the slave.
         high_bytes: of words 0, 1, 2, 3 and 5.
 
     Raises:
-        UsageError: a value does not fit its byte or word.
+        UsageError: a value does not fit into its byte or word.
     """
 
     station: int
@@ -70,7 +70,7 @@ class Transaction:
 
     @classmethod
     def parse(cls, words: Sequence[int]) -> Transaction:
-        """Take seven words apart."""
+        """Parse seven words."""
         station, command, length, master, master_reference, slave, slave_reference = words
         return cls(
             station & 0xFF,
@@ -84,18 +84,18 @@ class Transaction:
 
 @dataclass(frozen=True, slots=True)
 class SharedBlock:
-    """A row of an MD3 table: data that one station sends, and all others have then at the same place.
+    """A row of an MD3 table: data that one station sends, and that all others store at the same addresses.
 
     Attributes:
-        station: who sends, 1 to 254.
+        station: the sender, 1 to 254.
         command: 4.
-        length: how many registers, 1 to 32.
-        data: where they are, in every PLC.
+        length: the number of registers, 1 to 32.
+        data: the first register, the same in every PLC.
         reserved: words 5 and 6.
         high_bytes: of words 0 to 3.
 
     Raises:
-        UsageError: a value does not fit its byte or word.
+        UsageError: a value does not fit into its byte or word.
     """
 
     station: int
@@ -109,8 +109,8 @@ class SharedBlock:
         _require(self, len(_NO_HIGH_BYTES_MD3))
         for value in self.reserved:
             require_range("reserved", value, 0xFFFF)
-        require_range("reserved: how many", len(self.reserved), 2)
-        require_range("reserved: how many are missing", 2 - len(self.reserved), 0)
+        require_range("reserved: number", len(self.reserved), 2)
+        require_range("reserved: number missing", 2 - len(self.reserved), 0)
 
     def to_words(self) -> tuple[int, ...]:
         """The row as seven words."""
@@ -120,7 +120,7 @@ class SharedBlock:
 
     @classmethod
     def parse(cls, words: Sequence[int]) -> SharedBlock:
-        """Take seven words apart."""
+        """Parse seven words."""
         station, command, length, data, reference, *reserved = words
         return cls(
             station & 0xFF,

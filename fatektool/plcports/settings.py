@@ -1,11 +1,11 @@
-"""What is set beside the ports: message detection, the high-speed link of port 2, the modem of port 1.
+"""Other communication settings: message detection, the high-speed link of port 2, the modem of port 1.
 
 FBs link paper, section 13.1.2, MD1 to MD3 and modem::
 
     M1956           R4148's high byte is the time that ends a message without an end code
     R4148  high     that time, 1 ms; 12 by default
     M1958           this PLC is a slave of the high-speed link
-    M1967           one cycle of the high-speed link, then stop; else for ever
+    M1967           one cycle of the high-speed link, then stop; else continuous
     R4054 = 55xxH   station xx is the master; else station 1 is
     R4055           = 55xxH sets this PLC's station; else its low byte shows it
     R4058           a slave that is abnormal, 0 for none
@@ -47,13 +47,11 @@ ABNORMAL: Final = {
     0x08: "CRC error",
 }
 ABNORMAL_STEP: Final = (
-    "mend the station, then clear both with 'fatektool write R4058=0 R4059=0', again until they stay 0: "
+    "repair the station, then clear both with 'fatektool write R4058=0 R4059=0', again until they stay 0: "
     "R4058 shows one abnormal station even if there are more"
 )
 """The paper's procedure for R4058 and R4059 (section 13.1.2, MD3)."""
-UNWATCHED: Final = (
-    "the master detects only stations that send in its table; one that only receives may be absent"
-)
+UNWATCHED: Final = "the master checks only stations that send in its table, not those that only receive"
 """The limit of R4058 and R4059 (the same section)."""
 DIALLING: Final = {
     1: "does not wait for dial tone or busy tone",
@@ -66,7 +64,7 @@ PROFILES: Final = {0: "factory settings (AT&F)", 1: "user profile (AT&Y)"}
 
 @dataclass(frozen=True, slots=True)
 class MessageDetection:
-    """How the end of a message without an end code is found.
+    """How the end of a message without an end code is detected.
 
     Attributes:
         by_time: M1956.
@@ -79,19 +77,19 @@ class MessageDetection:
 
 @dataclass(frozen=True, slots=True)
 class HighSpeedLink:
-    """The high-speed link of port 2. What the PLC does not have is None.
+    """The high-speed link of port 2. Values that the PLC does not have are None.
 
     Attributes:
         slave: M1958.
         one_cycle: M1967.
-        master_station: by R4054; 1 unless it says another.
+        master_station: by R4054; 1 by default.
         station: this PLC's, by R4055.
         station_set: True if R4055 sets it, False if it shows it.
         abnormal_station: 0 for none.
         abnormal_code: of the last abnormal answer.
-        abnormal_count: how many there were.
+        abnormal_count: the number of abnormal answers.
         timeout: R4160's low byte if it is set by hand; None if it follows from the parameters.
-        parameters: R4161 as it is.
+        parameters: R4161 as a number.
     """
 
     slave: bool | None
@@ -112,7 +110,7 @@ class HighSpeedLink:
 
     @property
     def abnormal(self) -> str | None:
-        """The abnormal code in words; None where there is none."""
+        """The meaning of the abnormal code; None if there is none."""
         if not self.abnormal_code:
             return None
         known = ABNORMAL.get(self.abnormal_code)
@@ -126,11 +124,11 @@ class HighSpeedLink:
 
 @dataclass(frozen=True, slots=True)
 class Modem:
-    """The modem of port 1. What the PLC does not have is None.
+    """The modem of port 1. Values that the PLC does not have are None.
 
     Attributes:
         on: the high byte of R4149 is 55H.
-        phone_number: digits, ``,`` pause, ``#``, ``*``; None if the registers hold none.
+        phone_number: digits, ``,`` pause, ``#``, ``*``; None if the registers have none.
         pulse_dialling: M1959; False for tones.
         dial: M1964.
         connected: M1965.
@@ -152,7 +150,7 @@ class Modem:
 
 
 def decode_detection(values: Mapping[str, int]) -> MessageDetection:
-    """How the end of a message is found; ``values`` are raw, by element."""
+    """How the end of a message is detected; ``values`` are raw, by element."""
     interval = values.get("R4148")
     return MessageDetection(flag(values, "M1956"), None if interval is None else interval >> 8)
 
@@ -183,7 +181,7 @@ def decode_modem(values: Mapping[str, int]) -> Modem:
     if len(words) == len(PHONE_REGISTERS):
         try:
             number = parse_phone_number(words)
-        except DataError:  # registers that were never set: no number is no fault
+        except DataError:  # registers that were never set: this is not a fault
             number = None
     return Modem(
         None if function is None else function >> 8 == 0x55,

@@ -2,14 +2,14 @@
 
 FBs link paper, sections 13.1.2 (CLINK, FUN151) and 13.2.2 (M-BUS, FUN150)::
 
-    md0   count                   7 words a row ...              data of CPU link stations
-    md3   count                   7 words a row ...              high-speed link, port 2 alone
-    mbus  A550H  07H|count        7 words a row ...  reserved    data of Modbus slaves
-    md1   mode   start|end code   length   a byte a word ...     send, perhaps receive: any protocol
-    md2   mode   start|end code   length   a byte a word ...     receive, perhaps reply: any protocol
+    md0   count                   7 words each row              data of CPU link stations
+    md3   count                   7 words each row              high-speed link, only port 2
+    mbus  A550H  07H|count        7 words each row  reserved    data of Modbus slaves
+    md1   mode   start|end code   length   1 byte each word     send, perhaps receive: any protocol
+    md2   mode   start|end code   length   1 byte each word     receive, perhaps reply: any protocol
 
-Nothing of a table is lost: high bytes that the PLC does not take, reserved words and codes that no paper
-lists are kept, so that words -> table -> words is the identity. ``faults`` says what is wrong with a table.
+Nothing of a table is lost: high bytes that the PLC ignores, reserved words and unlisted codes are kept, so
+that words -> table -> words is the identity. ``faults`` returns the faults of a table.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class ClinkTable:
 
     Attributes:
         rows: 0 to 255 transactions.
-        count_high: the high byte of the count, which the PLC does not take.
+        count_high: the high byte of the count, which the PLC ignores.
     """
 
     rows: tuple[Transaction, ...]
@@ -51,11 +51,11 @@ class ClinkTable:
         _require_count(len(self.rows), self.count_high)
 
     def to_words(self) -> tuple[int, ...]:
-        """The table as the registers hold it from SR on."""
+        """The contents of the registers from SR on."""
         return self.count_high << 8 | len(self.rows), *(word for row in self.rows for word in row.to_words())
 
     def faults(self) -> list[Fault]:
-        """What the paper does not allow."""
+        """Everything that the paper does not allow."""
         found = [fault for number, row in enumerate(self.rows) for fault in check_clink(number, row)]
         return found if self.rows else [_NO_ROWS]
 
@@ -66,7 +66,7 @@ class HighSpeedTable:
 
     Attributes:
         rows: 0 to 255 blocks.
-        count_high: the high byte of the count, which the PLC does not take.
+        count_high: the high byte of the count, which the PLC ignores.
     """
 
     rows: tuple[SharedBlock, ...]
@@ -76,11 +76,11 @@ class HighSpeedTable:
         _require_count(len(self.rows), self.count_high)
 
     def to_words(self) -> tuple[int, ...]:
-        """The table as the registers hold it from SR on."""
+        """The contents of the registers from SR on."""
         return self.count_high << 8 | len(self.rows), *(word for row in self.rows for word in row.to_words())
 
     def faults(self) -> list[Fault]:
-        """What the paper does not allow."""
+        """Everything that the paper does not allow."""
         found = [fault for number, row in enumerate(self.rows) for fault in check_high_speed(number, row)]
         return found if self.rows else [_NO_ROWS]
 
@@ -93,7 +93,7 @@ class MbusTable:
         rows: 0 to 255 transactions.
         mark: SR+0, A550H in a valid table.
         row_words: the high byte of SR+1, 7 in a valid table.
-        reserved: the word behind the last row; None to leave it as it is.
+        reserved: the word after the last row; None to leave it unchanged.
     """
 
     rows: tuple[Transaction, ...]
@@ -107,13 +107,13 @@ class MbusTable:
         require_range("reserved", self.reserved or 0, 0xFFFF)
 
     def to_words(self) -> tuple[int, ...]:
-        """The table as the registers hold it from SR on."""
+        """The contents of the registers from SR on."""
         words = [self.mark, self.row_words << 8 | len(self.rows)]
         words += [word for row in self.rows for word in row.to_words()]
         return tuple(words) if self.reserved is None else (*words, self.reserved)
 
     def faults(self) -> list[Fault]:
-        """What the paper does not allow."""
+        """Everything that the paper does not allow."""
         found = []
         if self.mark != MBUS_MARK:
             found.append(Fault(None, 8, f"SR+0: expected A550, got {self.mark:04X}"))
@@ -127,7 +127,7 @@ Table = ClinkTable | HighSpeedTable | MbusTable | MessageTable
 
 
 def kind_of(table: Table) -> TableKind:
-    """The instruction and mode that a table is for."""
+    """The instruction and mode of a table."""
     match table:
         case ClinkTable():
             return TableKind.MD0
@@ -140,7 +140,7 @@ def kind_of(table: Table) -> TableKind:
 
 
 def table_words(kind: TableKind, head: Sequence[int]) -> int:
-    """How many words a table takes, the word that M-BUS reserves among them.
+    """The number of words of a table, including the word that M-BUS reserves.
 
     Args:
         kind: of the table.
@@ -156,7 +156,7 @@ def table_words(kind: TableKind, head: Sequence[int]) -> int:
 
 
 def parse_table(kind: TableKind, words: Sequence[int]) -> Table:
-    """Read a table from the words that it takes.
+    """Parse a table from its words.
 
     Raises:
         DataError: too few or too many words.
@@ -177,11 +177,11 @@ def parse_table(kind: TableKind, words: Sequence[int]) -> Table:
 
 
 def place_faults(start: Element, count: int) -> list[Fault]:
-    """What is wrong with the place of a table.
+    """The faults of the place of a table.
 
     Args:
         start: operand SR.
-        count: how many words the table takes.
+        count: the number of words of the table.
     """
     reason = misplaced("SR", start, count)
     return [] if reason is None else [Fault(None, None, reason)]

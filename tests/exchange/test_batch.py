@@ -192,7 +192,7 @@ def test_a_plc_without_loopback_serves_a_clean_batch(refuses: bool) -> None:
     for _ in range(2):
         assert read_all(link, [ReadPage(page) for page in range(3)]) == program
     assert len(notes) == 2
-    assert "no loopback" in notes[0]
+    assert "not answer the loopback" in notes[0]
 
 
 def test_a_plc_without_loopback_and_a_doubt_is_no_proof() -> None:

@@ -166,7 +166,7 @@ def test_a_plc_without_loopback_serves_a_clean_line(refuses: bool) -> None:
     link = linked(peer, notes=notes)
     assert link.ask(R0) == (0xA000,)
     assert link.fences.pass_last() is False
-    assert "answers no loopback (4E)" in notes[0]
+    assert "does not answer the loopback (4E)" in notes[0]
     assert link.ask(R0) == (0xA000,)
     assert link.counters.fences == 0
 

@@ -62,13 +62,13 @@ def test_it_is_answered_or_told_as_late(delay_s: float, request_: Request[Any]) 
         error = failure_of(link, request_)
         if error is not None:
             assert "its answers are late: after" in error.message
-            assert "and --timeout is 0.5" in error.message
-            assert f"give --timeout {longer_timeout(link.state.late_s):g}" in str(error.hint)
+            assert "(--timeout is 0.5)" in error.message
+            assert f"use --timeout {longer_timeout(link.state.late_s):g}" in str(error.hint)
             assert error.details["late_s"] == pytest.approx(link.state.late_s, abs=0.001)
         else:
             (told,) = warnings
             assert told.startswith("answers are late: after ")
-            assert "give --timeout" in told
+            assert "use --timeout" in told
         assert delay_s - 0.01 <= link.state.late_s <= delay_s + 0.06
 
 
@@ -77,7 +77,7 @@ def test_the_time_out_that_is_told_is_enough(delay_s: float) -> None:
     link = late(delay_s, retries=0)
     with pytest.raises(NoAnswer) as caught:
         link.ask(R0)
-    told = float(str(caught.value.hint).removeprefix("give --timeout "))
+    told = float(str(caught.value.hint).removeprefix("use --timeout "))
     warnings: list[str] = []
     link = late(delay_s, retries=0, timeout_s=told, warnings=warnings)
     for _ in range(3):

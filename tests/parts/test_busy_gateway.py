@@ -152,7 +152,7 @@ def test_a_gateway_that_stays_busy_is_named(cli: Cli, says: bytes | None) -> Non
         done = cli("status", "-p", gateway.target, "--timeout", "0.01", "--retries", "2")
     assert done.code == 3
     assert "Traceback" not in done.err
-    assert "ther programs may hold" in done.err
+    assert "ther programs may use" in done.err
     assert says is None or re.search("after it sent 'Port already in use'|reset", done.err), done.err
 
 
@@ -230,7 +230,7 @@ def test_ser2net_that_another_holds_is_waited_for(
             done = cli("status", "-p", gateway.target, "--timeout", "0.01", "--retries", "2")
             assert done.code == 3
             assert re.search("after it sent 'Port already in use'|reset", done.err), done.err
-            assert "ther programs may hold" in done.err
+            assert "ther programs may use" in done.err
             pauses: list[float] = []
 
             def pause(seconds: float) -> None:

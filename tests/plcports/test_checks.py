@@ -209,9 +209,9 @@ def test_each_kind_has_the_codes_that_the_paper_lists(kind: TableKind) -> None:
 
 
 def test_a_code_means_what_its_kind_says() -> None:
-    assert meaning(0, [TableKind.MD3]) == "the table's format is correct; this says nothing of the stations"
+    assert meaning(0, [TableKind.MD3]) == "the table's format is correct; the stations are not checked"
     assert "successful" not in meaning(0, [TableKind.MD3])
-    assert "this PLC's own ladder program" in meaning(0xA, [TableKind.MD2])
+    assert "the ladder program of this PLC" in meaning(0xA, [TableKind.MD2])
     assert "wiring" not in (next_step(0xA, [TableKind.MD2]) or "")
     assert meaning(3, [TableKind.MD1]) == "a code that the paper does not list"
     assert next_step(3, [TableKind.MD1]) is None
@@ -220,7 +220,7 @@ def test_a_code_means_what_its_kind_says() -> None:
 def test_where_the_kind_is_not_known_each_reading_is_given() -> None:
     assert meaning(0, list(TableKind)) == (
         "md0, md1, md2, mbus: the transaction was successful; "
-        "md3: the table's format is correct; this says nothing of the stations"
+        "md3: the table's format is correct; the stations are not checked"
     )
     assert meaning(7, list(TableKind)) == "mbus: port error: not port 1 to 4"
     assert meaning(1, list(TableKind)) == "a code that the paper does not list"

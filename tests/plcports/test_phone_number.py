@@ -70,7 +70,7 @@ def test_no_number_in_the_registers() -> None:
     with pytest.raises(DataError, match="no end"):
         parse_phone_number((0,) * 6)
     for nibble in (0xD, 0xF):
-        with pytest.raises(DataError, match=f"nibble 3 is {nibble:X}"):
+        with pytest.raises(DataError, match=f"nibble 3: expected .*, got {nibble:X}"):
             parse_phone_number((0xE000 | nibble << 8, 0, 0, 0, 0, 0))
     assert parse_phone_number((0x000E, 0, 0, 0, 0, 0)) == ""
 

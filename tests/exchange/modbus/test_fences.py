@@ -147,7 +147,7 @@ def test_a_line_that_is_never_silent_gives_no_answer() -> None:
     codec = RTU.mapped(parse_map("R100=400101"))
     babble: Pieces = [(0.6 + 0.2 * n, b"\xff") for n in range(40)]
     link = linked(Peer(lambda *_: babble), codec)
-    with pytest.raises(NoAnswer, match="no frame"):
+    with pytest.raises(NoAnswer, match="without a valid frame"):
         link.ask(R100)
 
 

@@ -207,7 +207,7 @@ def test_answers_with_another_number_are_told_as_such() -> None:
     peer = Peer(lambda request, _: [(0.01, b"\x12\x34" + request[2:4] + bytes.fromhex("0005 01 03 02 0007"))])
     with pytest.raises(NoAnswer) as caught:
         linked(peer, TCP).ask(FROM_R105)
-    assert "received an answer with transaction number 1234, expected 0004, as in the request" in str(
+    assert "received an answer with transaction number 1234, expected 0004 as in the request" in str(
         caught.value
     )
     assert "must repeat the number" in str(caught.value.hint)

@@ -109,7 +109,7 @@ def parse_frame(raw: bytes) -> Frame:
         return _checked(*found.group(0, 1, 2, 3, 4))
     if not FRAMING_BYTES <= len(raw) <= MAX_FRAME or raw[:1] != STX or raw[-1:] != ETX:
         raise FrameError(
-            f"invalid frame: expected STX to ETX, {FRAMING_BYTES} to {MAX_FRAME} bytes, got {len(raw)}",
+            f"invalid frame: expected STX to ETX, {FRAMING_BYTES} to {MAX_FRAME} bytes, got {len(raw)} bytes",
             raw=raw,
         )
     raise FrameError("station or command is not two capital hex digits", raw=raw)

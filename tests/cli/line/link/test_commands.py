@@ -79,7 +79,7 @@ def test_faults_are_shown_with_the_result_that_they_give(fbs: Plant) -> None:
     put(fbs, "R500", (3, 2, 1, 65, 12, 0, 12, 0, 2, 9, 1, 20, 0, 12, 3840, 255, 1, 1, 0, 0, 6, 4))
     show = ("link", "table", "show", "R500", "--kind", "md0")
     types = ", ".join(map(str, range(14)))
-    apart = "(result 6: the data types of master and slave do not go together)"
+    apart = "(result 6: the data types of master and slave are incompatible)"
     done = fbs.cli(*show)
     assert done.code == 0
     assert done.out.splitlines()[1:] == [

@@ -77,7 +77,7 @@ def test_result(fbs: Plant) -> None:
     foreign = fbs.cli("link", "result", "D100", "--kind", "mbus").out
     assert "command      46H, not a command of this kind" in foreign.splitlines()
     unnamed = fbs.cli("link", "result", "D100").out
-    assert "md2: this PLC's own ladder program did not give its reply" in unnamed
+    assert "md2: the ladder program of this PLC did not prepare its reply" in unnamed
     assert "--kind selects one of these meanings" in unnamed
 
 
@@ -107,7 +107,7 @@ def test_result_of_the_high_speed_link(fbs: Plant) -> None:
     put(fbs, "R100", (0, 9, 9, 9, 0xFFFF, 9, 9, 9))
     ask = ("link", "result", "R100", "--kind", "md3")
     document = fbs.json("link-result", *ask, "--check")
-    assert document["result"]["meaning"] == "the table's format is correct; this says nothing of the stations"
+    assert document["result"]["meaning"] == "the table's format is correct; the stations are not checked"
     assert [document[name] for name in ("waiting", "repeated", "active", "error", "done")] == [None] * 5
     assert document["result"]["station"] is None
     assert document["high_speed_link"] == {
@@ -135,7 +135,7 @@ def test_result_of_a_reply_that_was_late(fbs: Plant) -> None:
     put(fbs, "R100", (0x0A00, 9, 9, 9, 0x6000, 9, 9, 9, 0))
     done = fbs.cli("link", "result", "R100", "--kind", "md2", "--check")
     assert done.code == 1
-    assert "this PLC's own ladder program did not give its reply within the time-out span" in done.out
+    assert "the ladder program of this PLC did not prepare its reply within the time-out" in done.out
     assert "wiring" not in done.out
     assert "run" not in [line.split()[0] for line in done.out.splitlines()]
 
