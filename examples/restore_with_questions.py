@@ -7,17 +7,11 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import fatektool
-from fatektool.errors import RestoreIncomplete
-from fatektool.jobs.programs.restore import RestoreOptions
-
-if TYPE_CHECKING:
-    from fatektool.jobs.programs.restore import RestorePlan
 
 
-def agree(plan: RestorePlan, copy: Path | None) -> bool:
+def agree(plan: fatektool.RestorePlan, copy: Path | None) -> bool:
     """Ask whatever must be asked on your machine; this one agrees to small changes alone."""
     print(f"{len(plan.pages)} pages to write; previous program saved in {copy}")
     return len(plan.comparison.pages) < 100
@@ -26,18 +20,11 @@ def agree(plan: RestorePlan, copy: Path | None) -> bool:
 def main() -> int:
     """Restore, changed pages only, and write the previous program back if that fails."""
     target, file = sys.argv[1], Path(sys.argv[2])
-    options = RestoreOptions(stop=True, run=True, changed_only=True, rollback=True)
+    options = fatektool.RestoreOptions(stop=True, run=True, changed_only=True, rollback=True)
     with fatektool.connect(target) as plc:
         try:
-            result = fatektool.restore(
-                plc,
-                fatektool.load_backup(file),
-                file,
-                confirm=agree,
-                options=options,
-                safety_folder=file.parent,
-            )
-        except RestoreIncomplete as error:
+            result = fatektool.restore(plc, fatektool.load_backup(file), file, confirm=agree, options=options)
+        except fatektool.RestoreIncomplete as error:
             print(f"not complete: {error.details['pages_written']} hold the new program", file=sys.stderr)
             raise
     print(f"{result.pages_written} pages written, PLC in {result.mode_after.upper()}")

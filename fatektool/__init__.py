@@ -1,22 +1,17 @@
-r"""Back up, verify and restore ladder programs of FATEK/FACON PLCs, and diagnose them.
+r"""Back up, verify and restore ladder programs of FATEK/FACON PLCs, read and write them, and diagnose them.
 
-A library user needs three names::
+::
 
     import fatektool
 
     with fatektool.connect("/dev/ttyUSB0", station=1) as plc:
+        plc.read("R12", "D4:f32", "X0-X7")
+        plc.write({"R12": 5, "Y0": True})
         program = fatektool.backup(plc)
 
-``Plc`` has a method for each command, ``is_open``, ``is_alive()``, and ``station``, which can be set to ask
-another PLC on the same line. Who sends and reads bytes himself has these::
-
-    asked = fatektool.parse_command("46", "R12", "3").request
-    fatektool.frame(asked, station=1, protocol="facon")  # b"\x02014603R0001275\x03"
-    fatektool.checksum(b"\x02014603R00012")  # b"75"
-    fatektool.error_text(0xA)  # "illegal address, past what this PLC has"
-
-Everything here is loaded when it is first used, so that ``import fatektool`` costs next to nothing
-and never loads the command line's libraries.
+``dir(fatektool)`` shows all that is meant to be used, ``docs/library.md`` has an example of each. A name is
+loaded when it is first used, so that ``import fatektool`` costs next to nothing and never loads the command
+line's libraries.
 """
 
 from __future__ import annotations
@@ -28,55 +23,88 @@ from fatektool.version import __version__
 
 if TYPE_CHECKING:
     from fatektool.address import PlcAddress
-    from fatektool.client import Plc
-    from fatektool.connection import connect
-    from fatektool.errors import FatektoolError
+    from fatektool.errors import (
+        DataError,
+        FatektoolError,
+        LineError,
+        LineReadOnly,
+        NoAnswer,
+        PlcError,
+        PlcRefused,
+        PortBusy,
+        RestoreIncomplete,
+        UsageError,
+    )
     from fatektool.jobs.command_words import parse_command
     from fatektool.jobs.programs.backup import backup
-    from fatektool.jobs.programs.restore import restore
+    from fatektool.jobs.programs.restore import RestoreOptions, RestorePlan, RestoreResult, restore
     from fatektool.jobs.programs.verify import verify
-    from fatektool.jobs.status import read_status
+    from fatektool.jobs.status import StatusReport, read_status
+    from fatektool.library import Plc, connect
     from fatektool.program.archive import Backup, load_backup, save_backup
-    from fatektool.program.compare import compare
+    from fatektool.program.compare import Comparison, compare
     from fatektool.program.headers.header import Header
     from fatektool.program.image import Program
     from fatektool.project.program_file import ProgramFile, load_program
     from fatektool.protocol.elements import Element
     from fatektool.protocol.frames import checksum, error_text, frame
+    from fatektool.served import SimulatedTarget, simulate
 
 _HOMES = {
-    "Backup": "fatektool.program.archive",
-    "Element": "fatektool.protocol.elements",
-    "FatektoolError": "fatektool.errors",
-    "Header": "fatektool.program.headers.header",
-    "Plc": "fatektool.client",
-    "PlcAddress": "fatektool.address",
-    "Program": "fatektool.program.image",
-    "ProgramFile": "fatektool.project.program_file",
-    "backup": "fatektool.jobs.programs.backup",
-    "checksum": "fatektool.protocol.frames",
-    "compare": "fatektool.program.compare",
-    "connect": "fatektool.connection",
-    "error_text": "fatektool.protocol.frames",
-    "frame": "fatektool.protocol.frames",
-    "load_backup": "fatektool.program.archive",
-    "load_program": "fatektool.project.program_file",
-    "parse_command": "fatektool.jobs.command_words",
-    "read_status": "fatektool.jobs.status",
-    "restore": "fatektool.jobs.programs.restore",
-    "save_backup": "fatektool.program.archive",
-    "verify": "fatektool.jobs.programs.verify",
+    "address": ["PlcAddress"],
+    "errors": [
+        "DataError",
+        "FatektoolError",
+        "LineError",
+        "LineReadOnly",
+        "NoAnswer",
+        "PlcError",
+        "PlcRefused",
+        "PortBusy",
+        "RestoreIncomplete",
+        "UsageError",
+    ],
+    "jobs.command_words": ["parse_command"],
+    "jobs.programs.backup": ["backup"],
+    "jobs.programs.restore": ["RestoreOptions", "RestorePlan", "RestoreResult", "restore"],
+    "jobs.programs.verify": ["verify"],
+    "jobs.status": ["StatusReport", "read_status"],
+    "library": ["Plc", "connect"],
+    "program.archive": ["Backup", "load_backup", "save_backup"],
+    "program.compare": ["Comparison", "compare"],
+    "program.headers.header": ["Header"],
+    "program.image": ["Program"],
+    "project.program_file": ["ProgramFile", "load_program"],
+    "protocol.elements": ["Element"],
+    "protocol.frames": ["checksum", "error_text", "frame"],
+    "served": ["SimulatedTarget", "simulate"],
 }
+_HOME_OF = {name: f"fatektool.{home}" for home, names in _HOMES.items() for name in names}
 
 __all__ = [
     "Backup",
+    "Comparison",
+    "DataError",
     "Element",
     "FatektoolError",
     "Header",
+    "LineError",
+    "LineReadOnly",
+    "NoAnswer",
     "Plc",
     "PlcAddress",
+    "PlcError",
+    "PlcRefused",
+    "PortBusy",
     "Program",
     "ProgramFile",
+    "RestoreIncomplete",
+    "RestoreOptions",
+    "RestorePlan",
+    "RestoreResult",
+    "SimulatedTarget",
+    "StatusReport",
+    "UsageError",
     "__version__",
     "backup",
     "checksum",
@@ -90,18 +118,19 @@ __all__ = [
     "read_status",
     "restore",
     "save_backup",
+    "simulate",
     "verify",
 ]
 
 
 def __getattr__(name: str) -> Any:
     """Load a public name from its home when it is first asked for."""
-    if name not in _HOMES:
+    if name not in _HOME_OF:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = getattr(importlib.import_module(_HOMES[name]), name)
+    value = getattr(importlib.import_module(_HOME_OF[name]), name)
     globals()[name] = value
     return value
 
 
 def __dir__() -> list[str]:
-    return sorted(set(globals()) | set(__all__))
+    return list(__all__)

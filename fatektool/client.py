@@ -1,6 +1,7 @@
 """A PLC as an object: a typed method for each command, over a ``Link``.
 
-All values are plain: discretes are bool, registers unsigned int, pages 128 bytes.
+All values are plain: discretes are bool, registers unsigned int, pages 128 bytes. An element is an
+``Element`` or its text, ``"R12"``.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ from fatektool.protocol.commands import (
     WritePage,
     WriteRegisters,
 )
+from fatektool.protocol.elements import Element
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Sequence
@@ -37,7 +39,6 @@ if TYPE_CHECKING:
 
     from fatektool.exchange.link import Link
     from fatektool.protocol.commands import Request
-    from fatektool.protocol.elements import Element
     from fatektool.protocol.status import BriefStatus, DetailedStatus
     from fatektool.transport.lent import LentTransport
 
@@ -70,6 +71,11 @@ class Plc:
         self._resources = resources
         self._lent = lent
         self._open = True
+
+    @classmethod
+    def of(cls, plc: Plc) -> Self:
+        """The same PLC on the same open line, as this class."""
+        return cls(plc.link, plc.target, plc._resources, plc._lent)  # of the same class
 
     @property
     def is_open(self) -> bool:
@@ -211,51 +217,51 @@ class Plc:
 
     # --- discretes --------------------------------------------------------------------------------
 
-    def disable(self, element: Element) -> None:
+    def disable(self, element: Element | str) -> None:
         """Disable a discrete (command 42): the program no longer changes it."""
-        self.link.ask(ControlDiscrete(Control.DISABLE, element))
+        self.link.ask(ControlDiscrete(Control.DISABLE, Element.of(element)))
 
-    def enable(self, element: Element) -> None:
+    def enable(self, element: Element | str) -> None:
         """Enable a discrete (command 42): the program controls it again."""
-        self.link.ask(ControlDiscrete(Control.ENABLE, element))
+        self.link.ask(ControlDiscrete(Control.ENABLE, Element.of(element)))
 
-    def set(self, element: Element) -> None:
+    def set(self, element: Element | str) -> None:
         """Set a discrete to 1 (command 42)."""
-        self.link.ask(ControlDiscrete(Control.SET, element))
+        self.link.ask(ControlDiscrete(Control.SET, Element.of(element)))
 
-    def reset(self, element: Element) -> None:
+    def reset(self, element: Element | str) -> None:
         """Reset a discrete to 0 (command 42)."""
-        self.link.ask(ControlDiscrete(Control.RESET, element))
+        self.link.ask(ControlDiscrete(Control.RESET, Element.of(element)))
 
-    def read_disabled(self, first: Element, count: int) -> tuple[bool, ...]:
+    def read_disabled(self, first: Element | str, count: int) -> tuple[bool, ...]:
         """Read which of 1 to 256 consecutive discretes are disabled (command 43): True for disabled."""
-        return self.link.ask(ReadDisabled(first, count))
+        return self.link.ask(ReadDisabled(Element.of(first), count))
 
-    def read_discretes(self, first: Element, count: int) -> tuple[bool, ...]:
+    def read_discretes(self, first: Element | str, count: int) -> tuple[bool, ...]:
         """Read 1 to 256 consecutive discretes (command 44)."""
-        return self.link.ask(ReadDiscretes(first, count))
+        return self.link.ask(ReadDiscretes(Element.of(first), count))
 
-    def write_discretes(self, first: Element, values: Iterable[bool]) -> None:
+    def write_discretes(self, first: Element | str, values: Iterable[bool]) -> None:
         """Write 1 to 256 consecutive discretes (command 45)."""
-        self.link.ask(WriteDiscretes(first, tuple(values)))
+        self.link.ask(WriteDiscretes(Element.of(first), tuple(values)))
 
     # --- registers --------------------------------------------------------------------------------
 
-    def read_registers(self, first: Element, count: int) -> tuple[int, ...]:
+    def read_registers(self, first: Element | str, count: int) -> tuple[int, ...]:
         """Read consecutive registers (command 46): 1 to 64 of 16 bits or 1 to 32 of 32 bits, unsigned."""
-        return self.link.ask(ReadRegisters(first, count))
+        return self.link.ask(ReadRegisters(Element.of(first), count))
 
-    def write_registers(self, first: Element, values: Iterable[int]) -> None:
+    def write_registers(self, first: Element | str, values: Iterable[int]) -> None:
         """Write consecutive registers (command 47): 1 to 64 of 16 bits or 1 to 32 of 32 bits, unsigned."""
-        self.link.ask(WriteRegisters(first, tuple(values)))
+        self.link.ask(WriteRegisters(Element.of(first), tuple(values)))
 
-    def read_mixed(self, elements: Iterable[Element]) -> tuple[int, ...]:
+    def read_mixed(self, elements: Iterable[Element | str]) -> tuple[int, ...]:
         """Read elements of any kind (command 48), at most 64 words in all; a discrete is 0 or 1."""
-        return self.link.ask(ReadMixed(tuple(elements)))
+        return self.link.ask(ReadMixed(tuple(map(Element.of, elements))))
 
-    def write_mixed(self, items: Iterable[tuple[Element, int]]) -> None:
+    def write_mixed(self, items: Iterable[tuple[Element | str, int]]) -> None:
         """Write elements of any kind (command 49), at most 32 words in all; a discrete is 0 or 1."""
-        self.link.ask(WriteMixed(tuple(items)))
+        self.link.ask(WriteMixed(tuple((Element.of(each), value) for each, value in items)))
 
     # --- line and program -------------------------------------------------------------------------
 

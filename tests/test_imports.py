@@ -42,13 +42,15 @@ RANKS = {
     "history": 6,
     "inventory": 6,
     "report": 6,
+    "served": 4,
+    "library": 7,
     "cli": 7,
-    "__init__": 7,
-    "__main__": 8,
+    "__init__": 8,
+    "__main__": 9,
 }
 """A folder may import from lower ones and from itself."""
 
-TO_THE_SIMULATOR = {"simulator", "simulated", "cli"}
+TO_THE_SIMULATOR = {"simulator", "simulated", "served", "cli"}
 PRINTERS = {"click", "rich", "logging"}
 
 

@@ -20,7 +20,8 @@ import json
 import re
 import reprlib
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from pathlib import Path
+from typing import Any, Final
 
 from fatektool.errors import DataError
 from fatektool.files.atomic import read_bounded, write_whole
@@ -29,9 +30,6 @@ from fatektool.program.headers.families import short_document
 from fatektool.program.headers.header import PAGE_BYTES
 from fatektool.program.image import Program, is_whole, page_count
 from fatektool.program.plc_record import fault_of
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 SCHEMA: Final = "fatektool.backup/1"
 LARGEST_FILE: Final = 4 << 20  # the largest image takes 270 kB
@@ -168,24 +166,24 @@ class Backup:
             raise
 
 
-def save_backup(backup: Backup, path: Path, *, overwrite: bool = False) -> None:
+def save_backup(backup: Backup, path: Path | str, *, overwrite: bool = False) -> None:
     """Write a backup file, whole or not at all.
 
     Raises:
         UsageError: it exists and ``overwrite`` is False, or the place cannot be written.
         DataError: the disk is full or broken.
     """
-    write_whole(path, backup.to_bytes(), overwrite=overwrite)
+    write_whole(Path(path), backup.to_bytes(), overwrite=overwrite)
 
 
-def load_backup(path: Path) -> Backup:
+def load_backup(path: Path | str) -> Backup:
     """Read and check a backup file.
 
     Raises:
         UsageError: there is no such file.
         DataError: it is damaged or none of ours.
     """
-    return Backup.parse(read_bounded(path, LARGEST_FILE), str(path))
+    return Backup.parse(read_bounded(Path(path), LARGEST_FILE), str(path))
 
 
 def _json(data: bytes, name: str) -> dict[str, Any]:

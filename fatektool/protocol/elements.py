@@ -119,6 +119,19 @@ class Element:
         return Element(self.symbol, self.address + count * self.kind.stride)
 
     @classmethod
+    def of(cls, element: Element | str) -> Element:
+        """An element, given as one or as its text.
+
+        Raises:
+            UsageError: it is none.
+        """
+        if isinstance(element, Element):
+            return element
+        if not isinstance(element, str):
+            raise UsageError(f"expected an element such as 'R12', got {element!r:.80}")
+        return cls.parse(element)
+
+    @classmethod
     def parse(cls, text: str) -> Element:
         """Read an element as people write it: ``R12``, ``x0016``, ``DWM0``.
 

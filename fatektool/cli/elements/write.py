@@ -13,10 +13,9 @@ from fatektool.cli.shared.broadcast import broadcast_option, means_all, send_to_
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.modbus_map import modbus_map_option
 from fatektool.cli.shared.options import yes_option
-from fatektool.errors import LineError, PlcBusy, PlcError
-from fatektool.jobs.elements.assignment import parse_assignments
+from fatektool.errors import PlcError
+from fatektool.jobs.elements.assignment import parse_assignments, write_assignments
 from fatektool.jobs.elements.items import value_of
-from fatektool.jobs.elements.writes import write_elements
 from fatektool.planner import plan_writes
 
 if TYPE_CHECKING:
@@ -51,13 +50,7 @@ def write_command(
         return 0
     items = {item.element: item for item, _ in pairs}
     with connection.open(voice, writes=True) as plc:
-        try:
-            failed = write_elements(plc, [(item.element, raw) for item, raw in pairs])
-        except (LineError, PlcBusy) as error:
-            if plc.link.counters.writes:
-                left = _left(len(pairs))
-                error.hint = f"{error.hint}; {left}" if error.hint else left
-            raise
+        failed = write_assignments(plc, pairs)
         here = look(plc)
         document = write_document(plc, here, items, failed)
     taken = len(pairs) - len(failed)
@@ -65,13 +58,6 @@ def write_command(
     voice.show(document, lines)
     warn_of({items[each.element].key: _words(items[each.element], each) for each in failed}, voice)
     return PlcError.exit_code if failed else 0
-
-
-def _left(count: int) -> str:
-    """What is to be known of the values when the line failed after the first was sent."""
-    if count == 1:
-        return "the value may be written: read it, or write it again"
-    return f"some of the {count} values may be written: read them, or write them again"
 
 
 def _words(item: Item, each: NotTaken) -> str:

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from fatektool.cli.shared.inventory_file import inventory_path
 from fatektool.cli.shared.options import PATH
 from fatektool.cli.shared.pairs import together
 from fatektool.errors import DataError, FatektoolError
+from fatektool.inventory.find import inventory_path
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

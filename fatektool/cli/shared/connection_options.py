@@ -15,9 +15,10 @@ from click.core import ParameterSource
 from fatektool.address import CHECKS, DEFAULT_FORMATS, DEFAULTS, PlcAddress
 from fatektool.checks import YesNo
 from fatektool.cli.shared.connection import Connection
-from fatektool.cli.shared.inventory_file import complete_target, inventory_option, plc_named
+from fatektool.cli.shared.inventory_file import complete_target, inventory_option
 from fatektool.cli.shared.options import PATH, type_of, voice_options
 from fatektool.errors import UsageError
+from fatektool.inventory.find import plc_named
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -9,7 +9,7 @@ import click
 
 from fatektool.cli.shared.options import PATH
 from fatektool.errors import FatektoolError
-from fatektool.inventory.find import FILE_NAME, find_inventory, may_be_name, no_inventory
+from fatektool.inventory.find import FILE_NAME, VARIABLE, inventory_path, no_inventory, whole_inventory
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -17,25 +17,18 @@ if TYPE_CHECKING:
 
     from click.shell_completion import CompletionItem
 
-    from fatektool.inventory.entries import Inventory, PlcEntry
+    from fatektool.inventory.entries import Inventory
 
 F = TypeVar("F", bound="Callable[..., Any]")
 
 inventory_option = click.option(
     "--inventory",
     type=PATH,
-    envvar="FATEKTOOL_INVENTORY",
+    envvar=VARIABLE,
     metavar="FILE.toml",
     help=f"The file with the names of PLCs.  [default: ./{FILE_NAME}, then your configuration folder]  "
-    "[env: FATEKTOOL_INVENTORY]",
+    f"[env: {VARIABLE}]",
 )
-
-
-def inventory_path(named: Path | None) -> Path | None:
-    """The file of the inventory: as given, else in the current folder, else the user's; or None."""
-    from pathlib import Path
-
-    return find_inventory(named, (Path(FILE_NAME), Path(click.get_app_dir("fatektool")) / FILE_NAME))
 
 
 def open_inventory(named: Path | None) -> Inventory:
@@ -48,33 +41,7 @@ def open_inventory(named: Path | None) -> Inventory:
     path = inventory_path(named)
     if path is None:
         raise no_inventory()
-    return _whole(path)
-
-
-def _whole(path: Path) -> Inventory:
-    from fatektool.inventory.load import load_inventory
-
-    found = load_inventory(path)
-    found.require_whole()
-    return found
-
-
-def plc_named(word: str, named: Path | None) -> PlcEntry | None:
-    """The PLC of the inventory that ``--port`` names; None if it is a port.
-
-    Raises:
-        UsageError: it can only be a name, and is not in the inventory.
-        DataError: the inventory has faults.
-    """
-    if not may_be_name(word):
-        return None
-    path = inventory_path(named)
-    if path is None:
-        return None
-    found = _whole(path)
-    if word not in found.plcs and os.path.lexists(word):
-        return None
-    return found.named(word)
+    return whole_inventory(path)
 
 
 def complete_target(context: click.Context, _: click.Parameter, incomplete: str) -> list[CompletionItem]:
@@ -83,7 +50,7 @@ def complete_target(context: click.Context, _: click.Parameter, incomplete: str)
 
     from click.shell_completion import CompletionItem
 
-    named = context.params.get("inventory") or os.environ.get("FATEKTOOL_INVENTORY")
+    named = context.params.get("inventory") or os.environ.get(VARIABLE)
     names = complete_names(None if named is None else Path(named), incomplete)
     return names or [CompletionItem(incomplete, type="file")]
 

@@ -7,14 +7,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fatektool.errors import UsageError
+from fatektool.errors import LineError, PlcBusy, UsageError
 from fatektool.jobs.elements.selection import overlapping, parse_item
-from fatektool.protocol.values import ValueType, encode
+from fatektool.jobs.elements.writes import write_elements
+from fatektool.protocol.values import Value, ValueType, encode
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping, Sequence
 
+    from fatektool.client import Plc
     from fatektool.jobs.elements.selection import Item
+    from fatektool.jobs.elements.writes import NotTaken
 
 
 def parse_assignments(texts: Iterable[str]) -> list[tuple[Item, int]]:
@@ -23,12 +26,7 @@ def parse_assignments(texts: Iterable[str]) -> list[tuple[Item, int]]:
     Raises:
         UsageError: a text is no assignment, a value does not fit, or two targets overlap.
     """
-    found = [pair for text in texts for pair in parse_assignment(text)]
-    both = overlapping(item.element for item, _ in found)
-    if both is not None:
-        one, other = both
-        raise UsageError(f"{one} and {other} overlap: expected each discrete and register once")
-    return found
+    return _apart(pair for text in texts for pair in parse_assignment(text))
 
 
 def parse_assignment(text: str) -> list[tuple[Item, int]]:
@@ -40,13 +38,51 @@ def parse_assignment(text: str) -> list[tuple[Item, int]]:
     left, sign, right = text.partition("=")
     if not sign or not right.strip():
         raise UsageError(f"{text!r}: expected ELEMENT=VALUE, such as R12=4261, Y0=on or D4:f32=1.5")
+    return _assigned(left, right.split(","), repr(text))
+
+
+def assigned(values: Mapping[str, Value | Sequence[Value]]) -> list[tuple[Item, int]]:
+    """The same for values by selection, as a program has them: ``{"R12": 5, "Y0": True, "R0:3": [1, 2, 3]}``.
+
+    Raises:
+        UsageError: a key is no selection, a value does not fit, or two targets overlap.
+    """
+    found = []
+    for left, value in values.items():
+        several = [value] if isinstance(value, Value) else value
+        if not isinstance(several, list | tuple):
+            raise UsageError(f"{left}: expected a number, a bool, text or a list of these, got {value!r:.80}")
+        found += _assigned(left, [_text(left, each) for each in several], left)
+    return _apart(found)
+
+
+def _text(left: str, value: Value) -> str:
+    """A value of a program as a user would write it."""
+    if (
+        isinstance(value, int)
+        and not isinstance(value, bool)
+        and left.rpartition(":")[2].strip().lower() == ValueType.HEX.value
+    ):
+        return f"{value:X}"
+    return str(value)
+
+
+def _apart(pairs: Iterable[tuple[Item, int]]) -> list[tuple[Item, int]]:
+    found = list(pairs)
+    both = overlapping(item.element for item, _ in found)
+    if both is not None:
+        one, other = both
+        raise UsageError(f"{one} and {other} overlap: expected each discrete and register once")
+    return found
+
+
+def _assigned(left: str, values: list[str], name: str) -> list[tuple[Item, int]]:
     items = parse_item(left)
-    values = right.split(",")
     if len(values) == 1:
-        values *= len(items)
+        values = values * len(items)
     if len(values) != len(items):
         expected = "1 value" if len(items) == 1 else f"1 value or {len(items)}"
-        raise UsageError(f"{text!r}: expected {expected}, got {len(values)}")
+        raise UsageError(f"{name}: expected {expected}, got {len(values)}")
     typed = left.rpartition(":")[2].strip().lower() in {kind.value for kind in ValueType}
     return [(item, _encoded(item, value, typed=typed)) for item, value in zip(items, values, strict=True)]
 
@@ -56,3 +92,26 @@ def _encoded(item: Item, value: str, *, typed: bool) -> int:
         return encode(value, item.type if typed else None, item.element.kind.bits)
     except UsageError as error:
         raise UsageError(f"{item.key}: {error.message}", element=item.key) from error
+
+
+def write_assignments(plc: Plc, pairs: Sequence[tuple[Item, int]]) -> list[NotTaken]:
+    """Write them, read all back, and report what did not take.
+
+    Raises:
+        UsageError: the protocol cannot write one of them; nothing was sent.
+        LineError: no answer; the hint says if some may be written.
+    """
+    try:
+        return write_elements(plc, [(item.element, raw) for item, raw in pairs])
+    except (LineError, PlcBusy) as error:
+        if plc.link.counters.writes:
+            left = _left(len(pairs))
+            error.hint = f"{error.hint}; {left}" if error.hint else left
+        raise
+
+
+def _left(count: int) -> str:
+    """What is to be known of the values when the line failed after the first was sent."""
+    if count == 1:
+        return "the value may be written: read it, or write it again"
+    return f"some of the {count} values may be written: read them, or write them again"

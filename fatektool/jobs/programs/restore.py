@@ -259,11 +259,12 @@ def _run(plc: Plc) -> None:
 def restore(
     plc: Plc,
     backup: Backup,
-    file: Path,
+    file: Path | str,
     *,
     confirm: Callable[[RestorePlan, Path | None], bool],
     options: RestoreOptions = RestoreOptions(),
-    safety_folder: Path | None = None,
+    safety_folder: Path | str | None = None,
+    save_previous: bool = True,
     progress: Progress = ignore,
 ) -> RestoreResult:
     """Restore a program: plan, safety backup, question, write, read back.
@@ -275,22 +276,25 @@ def restore(
         confirm: is shown the plan and where the previous program is saved, and says whether to go on; not
             called if no page is to be written.
         options: what the restore may do.
-        safety_folder: where the safety backup goes; None for none.
+        safety_folder: where the safety backup goes; None for beside ``file``.
+        save_previous: False for no safety backup: the restore cannot be undone.
         progress: called for each page.
 
     Raises:
-        UsageError: ``confirm`` said no.
+        UsageError: ``confirm`` said no, or the safety backup cannot be written; nothing was written.
         RestoreIncomplete: the PLC's program is neither the previous nor the new one.
         DataError: see ``plan_restore``.
         PlcError: see ``plan_restore`` and ``carry_out``.
         LineError: see ``plan_restore`` and ``carry_out``.
     """
-    known = known_before_restore(backup.program, file, safety_folder, plc.link.station)
+    file = Path(file)
+    folder = Path(safety_folder or file.parent) if save_previous else None
+    known = known_before_restore(backup.program, file, folder, plc.link.station)
     plan = plan_restore(plc, backup, options, known=known, progress=progress)
 
     def agree(kept: Path | None) -> None:
         if plan.pages and not confirm(plan, kept):
             raise UsageError("Aborted. Nothing was written.")
 
-    safety = SafetyBackup(plan.present, plan.wanted, file, safety_folder)
+    safety = SafetyBackup(plan.present, plan.wanted, file, folder)
     return carry_out(plc, plan, safety, agree, progress=progress)

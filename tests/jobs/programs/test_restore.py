@@ -37,6 +37,7 @@ def put(bench: Bench, wanted: Program, folder: Path | None, **options: bool) -> 
         confirm=lambda plan, kept: True,  # noqa: ARG005
         options=RestoreOptions(**options),
         safety_folder=folder,
+        save_previous=folder is not None,
     )
 
 

@@ -44,7 +44,7 @@ def put(
         folder / "press.json",
         confirm=lambda plan, kept: True,  # noqa: ARG005
         options=RestoreOptions(**options),
-        safety_folder=folder if safety else None,
+        save_previous=safety,
         progress=progress,
     )
 

@@ -11,13 +11,13 @@ import click
 from fatektool.address import CHECKS
 from fatektool.cli.many.inventory.documents import add_document
 from fatektool.cli.shared.connection_options import ROWS, address_options, given_of
-from fatektool.cli.shared.inventory_file import inventory_option, inventory_path
+from fatektool.cli.shared.inventory_file import inventory_option
 from fatektool.cli.shared.options import PATH, voice_options
 from fatektool.cli.shared.pairs import apart
 from fatektool.errors import DataError, UsageError
 from fatektool.files.atomic import read_bounded, write_whole
 from fatektool.inventory.add import with_plc
-from fatektool.inventory.find import FILE_NAME
+from fatektool.inventory.find import FILE_NAME, inventory_path
 from fatektool.inventory.load import MAX_INVENTORY
 
 if TYPE_CHECKING:

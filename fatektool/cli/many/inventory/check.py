@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 import click
 
 from fatektool.cli.many.inventory.documents import check_document
-from fatektool.cli.shared.inventory_file import inventory_option, inventory_path
+from fatektool.cli.shared.inventory_file import inventory_option
 from fatektool.cli.shared.options import voice_options
 from fatektool.errors import FatektoolError
 from fatektool.inventory.entries import InventoryFault
-from fatektool.inventory.find import no_inventory
+from fatektool.inventory.find import inventory_path, no_inventory
 from fatektool.inventory.load import load_inventory
 
 if TYPE_CHECKING:
