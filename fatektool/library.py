@@ -79,7 +79,7 @@ class Plc(client.Plc):
             UsageError: a key is no element, or a value does not fit it; nothing was sent.
             PlcError: values that the PLC refused or did not keep. ``details["errors"]`` has each by name.
             LineReadOnly: the line is read-only; nothing was sent.
-            LineError: no answer; some of the values may be written.
+            LineError: no answer; some of the values may have been written.
         """
         from fatektool.jobs.elements.assignment import assigned, write_assignments
 

@@ -180,7 +180,7 @@ def test_what_the_plc_refuses_or_does_not_keep_is_an_error_by_name() -> None:
             plc.read("R60000", "R1", "R60001")
         assert caught.value.details["values"] == {"R60000": None, "R1": 7, "R60001": None}
         with pytest.raises(
-            fatektool.PlcError, match="X0: did not take: expected True, it holds False"
+            fatektool.PlcError, match="X0: not kept: expected True, read back False"
         ) as caught:
             plc.write({"X0": True, "R1": 8})
         assert list(caught.value.details["errors"]) == ["X0"]
@@ -192,7 +192,7 @@ def test_a_line_that_fails_half_way_says_that_values_may_be_written() -> None:
         plc = fatektool.connect(simulated.target, timeout_s=0.01, retries=0)
         with plc, pytest.raises(fatektool.LineError) as caught:
             plc.write({"R0": 1, "Y5": True})
-    assert "values may be written" in str(caught.value)
+    assert "values may have been written" in str(caught.value)
 
 
 # --- the inventory ----------------------------------------------------------------------------------------

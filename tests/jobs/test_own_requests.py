@@ -67,7 +67,7 @@ def test_a_write_whose_read_back_is_refused_is_written_and_not_proven() -> None:
 
 def test_a_refused_write_is_told_as_refused() -> None:
     (left,) = write_elements(client(Refusing(b"47", b"49")), [(R5, 7)])
-    assert left.words(str).startswith("did not take: expected 7, it holds 0: the PLC refused to write")
+    assert left.words(str).startswith("not kept: expected 7, read back 0: the PLC refused to write")
     assert not left.acknowledged
 
 

@@ -146,7 +146,7 @@ def test_who_waits_for_a_watched_line_has_it_between_two_rounds(
                 assert done.err.endswith("Z): waiting, for 60 s at most\n")
         if interval < 60:
             assert job.rounds(3) == [{"R0": value(0)}] * 3
-        assert "trying on" not in job.interrupted()
+        assert "trying again" not in job.interrupted()
 
 
 def test_a_watch_waits_for_its_line_as_long_as_it_takes(place: Path) -> None:
@@ -178,7 +178,7 @@ def test_a_port_that_is_gone_is_opened_anew(place: Path) -> None:
         lock = PortLock(os.path.realpath(place / "away"), 60)
         lock.acquire()
         lock.release()
-        while "trying on" not in job.told():
+        while "trying again" not in job.told():
             pass
         (place / "away").rename(place / "plc")
         job.rounds(3)

@@ -72,12 +72,12 @@ def put(bench: Bench, folder: Path, **options: bool) -> RestoreResult:
 
 LIES = {
     "restore": (["restore", "new.json", "--yes"], "worn out or protected"),
-    "write": (["write", "R12=5"], "R12: did not take: expected 5, it holds 0"),
-    "set": (["discrete", "set", "Y3"], "Y3: did not take: the program writes it too; 'fatektool discrete"),
-    "disable": (["discrete", "disable", "X3"], "X3: did not take: acknowledged, and nothing changed"),
+    "write": (["write", "R12=5"], "R12: not kept: expected 5, read back 0"),
+    "set": (["discrete", "set", "Y3"], "Y3: no effect: the program writes it too; 'fatektool discrete"),
+    "disable": (["discrete", "disable", "X3"], "X3: no effect: acknowledged, but nothing changed"),
     "apply": (
         ["snapshot", "apply", "data.json", "--yes"],
-        "did not take: expected 0007 in R12, it holds 0000",
+        "not kept: expected 0007 in R12, read back 0000",
     ),
 }
 

@@ -141,7 +141,7 @@ def test_watch_over_a_line_that_comes_back(press: Press, cli: Cli, monkeypatch: 
     assert done.code == 0
     page = report_of(press.folder)
     assert facts(page)["Rounds read"].figures == [6]
-    assert facts(page)["Rounds lost"].figures == [done.err.count("trying on")]
+    assert facts(page)["Rounds lost"].figures == [done.err.count("trying again")]
     assert "Read with gaps" in page.first("header").text
 
 

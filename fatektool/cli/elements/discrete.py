@@ -1,6 +1,6 @@
 """``discrete``: single discretes, enabled, disabled, set and reset (42), and listed (43, 44).
 
-Over a protocol that cannot say what is disabled, they are switched and listed all the same.
+Protocols without disabled discretes have set, reset and list.
 """
 
 from __future__ import annotations
@@ -34,12 +34,12 @@ if TYPE_CHECKING:
 def discrete_command() -> None:
     """Enable, disable, set and reset single discretes, and list their state.
 
-    A disabled discrete keeps its state, whatever the program or the terminal says, until it is enabled again.
+    A disabled discrete keeps its state, whatever the program or the terminal does, until it is enabled again.
     """
 
 
 def _control(name: str, control: Control, text: str) -> None:
-    """Make one of the four; what disables must be able to show it."""
+    """Make one of the four commands; enable and disable need to read the state back (43)."""
     needs: tuple[Command, ...] = (Command.CONTROL_DISCRETE,)
     if control not in SWITCHES:
         needs += (Command.READ_DISABLED,)
@@ -63,11 +63,11 @@ def _control(name: str, control: Control, text: str) -> None:
             return _show(plc, found, voice, look(plc))
 
 
-_control("enable", Control.ENABLE, "Give discretes back to the program.")
+_control("enable", Control.ENABLE, "Enable discretes: the program or the terminal controls them again.")
 _control(
     "disable",
     Control.DISABLE,
-    "Hold discretes as they are, whatever the program does; 'set' and 'reset' still switch them.",
+    "Disable discretes: they keep their state, whatever the program does; 'set' and 'reset' switch them.",
 )
 _control("set", Control.SET, "Switch discretes on.")
 _control("reset", Control.RESET, "Switch discretes off.")
@@ -85,7 +85,7 @@ def list_command(elements: tuple[str, ...], connection: Connection, voice: Voice
 
 
 def _show(plc: Plc, found: DiscreteStates, voice: Voice, here: Addressee | None = None) -> int:
-    """Print the states, and say what was refused and what did not take.
+    """Print the states, then what was refused and what had no effect.
 
     Args:
         plc: the PLC.
@@ -97,7 +97,7 @@ def _show(plc: Plc, found: DiscreteStates, voice: Voice, here: Addressee | None 
         discrete_document(plc, found, here),
         [*_lines(found.states), *([] if here is None else [here.line])],
     )
-    warn_of({name: f"did not take: {why}" for name, why in found.not_taken.items()}, voice)
+    warn_of({name: f"no effect: {why}" for name, why in found.not_taken.items()}, voice)
     warn_of(found.errors, voice, found.not_asked)
     return PlcError.exit_code if found.errors or found.not_taken else 0
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @click.command(
     "read", epilog="Example: fatektool read R12:3 WM8 DR2 Y0-Y7 X16 D4:f32 -p /dev/ttyUSB0", help=(
-        f"Read elements of any kind, in the fewest bytes.\n\n{SELECTION}"
+        f"Read elements of any kind.\n\n{SELECTION}"
     ),
 )  # fmt: skip
 @click.argument("elements", nargs=-1, required=True)

@@ -1,4 +1,4 @@
-"""Values of elements for people, and what is wrong with some of them."""
+"""Values of elements for people, and warnings about some of them."""
 
 from __future__ import annotations
 
@@ -13,8 +13,7 @@ if TYPE_CHECKING:
     from fatektool.protocol.values import Value
 
 SELECTION: Final = (
-    "ELEMENTS are R12, a range R0-R99, a count R0:100, each with a type if need be: R12:i16, D4:f32, "
-    "R0:8:bcd. "
+    "ELEMENTS: R12, a range R0-R99, a count R0:100; optionally with a type: R12:i16, D4:f32, R0:8:bcd. "
     "Types: bool, u16, i16, u32, i32, f32, bcd, hex."
 )
 """For the help of each command that takes elements."""
@@ -41,26 +40,28 @@ def value_lines(values: Mapping[str, Value | None], comments: Mapping[str, str])
 
 
 def warn_of(errors: Mapping[str, str], voice: Voice, not_asked: Sequence[str] = ()) -> None:
-    """Say what is wrong with which elements: the first few, and how many more.
+    """Warn of elements: the first few, and how many more.
 
     Args:
-        errors: what is wrong, by key.
-        voice: says it.
-        not_asked: those of them that were not asked; a line for neighbours with the same reason.
+        errors: the warnings, by key.
+        voice: prints.
+        not_asked: those of them that the PLC was not asked for; a line for neighbours with the same reason.
     """
     left_out = set(not_asked)
     keys = [key for key in errors if key not in left_out]
-    told = keys if len(keys) <= _MOST_NAMED else keys[: _MOST_NAMED // 2]
-    for key in told:
+    shown_keys = keys if len(keys) <= _MOST_NAMED else keys[: _MOST_NAMED // 2]
+    for key in shown_keys:
         voice.warn(f"{key}: {errors[key]}")
-    if len(told) < len(keys):
-        voice.warn(f"and {len(keys) - len(told)} more, {keys[len(told)]} to {keys[-1]}; --json tells of each")
+    if len(shown_keys) < len(keys):
+        voice.warn(
+            f"and {len(keys) - len(shown_keys)} more, {keys[len(shown_keys)]} to {keys[-1]}; --json has all"
+        )
     groups = [list(some) for _, some in groupby(not_asked, errors.__getitem__)]
     for group in groups[:_MOST_NAMED]:
         voice.warn(f"{_first_to_last(group)}: {errors[group[0]]}")
     rest = [key for group in groups[_MOST_NAMED:] for key in group]
     if rest:
-        voice.warn(f"{_first_to_last(rest)}: not asked either: --json tells of each why")
+        voice.warn(f"{_first_to_last(rest)}: not asked either; --json has the reasons")
 
 
 def _first_to_last(keys: Sequence[str]) -> str:

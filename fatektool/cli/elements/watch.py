@@ -47,7 +47,7 @@ _AROUND: Final = 4  # title, header, what is left out, and the line of the curso
     "watch",
     epilog="Example: fatektool watch R12 D4:f32 Y0-Y7 --interval 0.5 -p /dev/ttyUSB0",
     help="Show values live until Ctrl-C; without a terminal, print one NDJSON line a round.\n\n"
-    "Another process that waits for the line gets it between two rounds.\n\n"
+    "Another process can use the line between two rounds.\n\n"
     f"{SELECTION}",
 )
 @click.argument("elements", nargs=-1)
@@ -56,9 +56,9 @@ _AROUND: Final = 4  # title, header, what is left out, and the line of the curso
     "--interval",
     type=Seconds(0, 86400),
     metavar="S",
-    help="From round to round; by default interval_s of --spec, else 1.",
+    help="Interval of the rounds; by default interval_s of --spec, else 1.",
 )
-@click.option("--count", type=click.IntRange(1), help="So many rounds; by default until Ctrl-C.")
+@click.option("--count", type=click.IntRange(1), help="Number of rounds; by default until Ctrl-C.")
 @comments_options
 @report_option
 @connection_options
@@ -114,15 +114,15 @@ def _rounds(
     *,
     kept: Rounds | None,
 ) -> Iterator[Snapshot]:
-    """A snapshot a round, on time; a line that fails for long ends it.
+    """A snapshot for each round; ends if the line fails for long.
 
     Args:
         plc: the PLC.
         items: what to read.
         interval_s: from round to round.
-        count: so many rounds; None for no end.
-        voice: is told of rounds that failed.
-        kept: takes the rounds, for a report; None for none.
+        count: how many; None for no end.
+        voice: warns of rounds that failed.
+        kept: gets the rounds, for a report; None for none.
     """
 
     def failed(error: LineError) -> None:

@@ -36,12 +36,13 @@ if TYPE_CHECKING:
 def write_command(
     assignments: tuple[str, ...], connection: Connection, voice: Voice, *, broadcast: bool, yes: bool
 ) -> int:
-    """Write elements of any kind, in the fewest bytes, and read them back.
+    """Write elements of any kind, and read them back.
 
-    What did not take is said (exit 4): a disabled discrete, a read-only register, one that the program writes
-    too. A range takes one value for all of it, or one each: R0:3=1,2,3.
+    A value that the PLC does not keep is reported (exit 4): of a disabled discrete, of a read-only register,
+    of a register that the program writes too. A range gets one value for all its elements, or one for each:
+    R0:3=1,2,3.
 
-    Nothing is asked, but before a broadcast.
+    There is no question, except before a broadcast.
     """
     pairs = parse_assignments(assignments)
     if means_all(connection, broadcast=broadcast):

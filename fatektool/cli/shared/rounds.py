@@ -74,7 +74,7 @@ def paced_rounds(
             if voice is not None:
                 if failures >= _MOST_FAILURES or not done:
                     raise
-                voice.warn(f"{error.message}; trying on")
+                voice.warn(f"{error.message}; trying again")
         else:
             failures = 0
             done += 1

@@ -161,7 +161,7 @@ def _lines(record: Unfinished, path: str) -> Iterator[str]:
     if program:
         yield "a restore into this PLC did not complete: do not switch it to RUN"
     else:
-        yield f"'{record.job}' into this PLC did not complete: some of the values may be written"
+        yield f"'{record.job}' into this PLC did not complete: some of the values may have been written"
     rows: list[tuple[str, object]] = [("started", record.time)]
     if record.file is not None:
         rows.append(("file", record.file))

@@ -1,6 +1,6 @@
-"""What a user wants written: ``R12=4261``, ``Y0=on``, ``D4:f32=1.5``, ``R0:3=1,2,3``, ``R0-R9=0``.
+"""The values that a user assigns: ``R12=4261``, ``Y0=on``, ``D4:f32=1.5``, ``R0:3=1,2,3``, ``R0-R9=0``.
 
-The left side is a selection. The right side is one value for all of it, or as many as it has, with commas.
+The left side is a selection. The right side is one value for all its elements, or one for each, with commas.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 
 
 def parse_assignments(texts: Iterable[str]) -> list[tuple[Item, int]]:
-    """Read what a user wants written: items with raw, unsigned values.
+    """Read assignments: items with raw, unsigned values.
 
     Raises:
-        UsageError: a text is no assignment, a value does not fit, or two targets overlap.
+        UsageError: a text is not an assignment, a value does not fit, or two targets overlap.
     """
     return _apart(pair for text in texts for pair in parse_assignment(text))
 
@@ -113,5 +113,5 @@ def write_assignments(plc: Plc, pairs: Sequence[tuple[Item, int]]) -> list[NotTa
 def _left(count: int) -> str:
     """What is to be known of the values when the line failed after the first was sent."""
     if count == 1:
-        return "the value may be written: read it, or write it again"
-    return f"some of the {count} values may be written: read them, or write them again"
+        return "the value may have been written: read it, or write it again"
+    return f"some of the {count} values may have been written: read them, or write them again"

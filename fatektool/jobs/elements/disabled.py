@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def read_disabled(plc: Plc, elements: Iterable[Element]) -> tuple[dict[Element, bool], Refusals]:
     """Which discretes are disabled, and why that is not known of the others.
 
-    Nothing is known of any where the protocol has no command for it.
+    Nothing is known if the protocol has no command for it.
 
     Args:
         plc: the PLC.

@@ -39,7 +39,7 @@ class DiscreteStates:
 
     Attributes:
         states: of those that could be read.
-        not_taken: those that are not as they were asked to be, and why.
+        not_taken: those on which the command had no effect, and why.
         errors: those that the PLC refused or that could not be read, and why.
         not_asked: those of ``errors`` that the PLC was not asked for.
     """
@@ -59,7 +59,7 @@ def parse_discretes(texts: Iterable[str]) -> list[Element]:
     elements = [item.element for item in parse_items(texts)]
     for element in elements:
         if element.kind.bits != 1:
-            raise UsageError(f"{element} is no discrete: expected X, Y, M, S, T or C")
+            raise UsageError(f"{element} is not a discrete: expected X, Y, M, S, T or C")
     return elements
 
 
@@ -132,11 +132,11 @@ def _took(state: DiscreteState, control: Control) -> bool:
 
 
 def _why(name: str, state: DiscreteState, control: Control, *, knows_disabled: bool) -> str:
-    """Why a discrete is not as it was asked to be; ``knows_disabled`` if this protocol has 43."""
+    """Why a command had no effect; ``knows_disabled`` if this protocol has 43."""
     if control not in SWITCHES or state.disabled:
-        return "acknowledged, and nothing changed"
+        return "acknowledged, but nothing changed"
     if not knows_disabled:
-        return "acknowledged, and nothing changed: it is disabled, an input, or the program writes it too"
+        return "acknowledged, but nothing changed: it is disabled, an input, or the program writes it too"
     if name.startswith("X"):
         return f"an input follows its terminal; 'fatektool discrete disable {name}' holds it"
     return f"the program writes it too; 'fatektool discrete disable {name}' holds it"

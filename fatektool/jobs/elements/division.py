@@ -1,14 +1,14 @@
-"""Which of many elements a PLC refuses, when a request for all of them was refused.
+"""Which of many elements a PLC refuses, after it refused a request for all of them.
 
-A refusal does not say which element it is for. So the elements are asked again in parts: a part that is
-refused is halved, one that is answered is followed by one twice as large, until each refused element was
-asked alone. A refused element costs its own request, and neighbours that are refused a search: at most
-``4 + 4 * log2(n)`` requests among n elements that one request asked for.
+A refusal does not say for which element it is. So the elements are asked for again in parts: a part that is
+refused is halved, after an answer the next part is twice as large, until each refused element was asked for
+alone. Each refused element takes its own request, and refused neighbours a search: at most
+``4 + 4 * log2(n)`` requests among the n elements of one request.
 
-Nobody waits for thousands of such requests. Behind ``ROW`` neighbours that were each refused alone begins a
-*gap*: there every ``STEP``-th element is asked alone. Those between two that are refused are not asked, and
-their error says so; from the first one that is answered on, all are asked again. So all that a PLC has is
-read, but for fewer than ``STEP`` elements in a row behind ``ROW`` or more that are refused.
+Thousands of such requests would take too long. After ``ROW`` neighbours that were each refused alone a *gap*
+begins: there every ``STEP``-th element is asked for. Those between two refused ones are not asked for, and
+their error says so; from the first answered one on, all are asked for again. So all elements that a PLC has
+are read, except fewer than ``STEP`` in a row after ``ROW`` or more refused ones.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ STEP: Final = 16
 
 @dataclass(slots=True)
 class Refusals:
-    """What came of elements that have no value.
+    """Elements without a value.
 
     Attributes:
-        errors: what the PLC said of an element that it refused, or why it was not asked.
+        errors: the PLC's error for an element that it refused, or why it was not asked for.
         not_asked: those of them that were not asked.
     """
 
@@ -40,7 +40,7 @@ class Refusals:
     not_asked: set[Element] = field(default_factory=set)
 
     def leave_out(self, elements: Iterable[Element], why: str) -> None:
-        """Say of elements that they are not asked, and why."""
+        """Mark elements as not asked for, with the reason."""
         found = dict.fromkeys(elements, f"not asked: {why}")
         self.errors |= found
         self.not_asked |= found.keys()

@@ -1,4 +1,4 @@
-"""How many elements of each kind a PLC has, as it says itself (53)."""
+"""How many elements of each kind a PLC has, by its status (53)."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def limits(system: System) -> dict[str, int]:
 
 
 def ask_limits(plc: Plc) -> dict[str, int]:
-    """Ask the PLC how many it has (53); nothing where it does not say so in a layout that a paper describes.
+    """Ask the PLC how many it has (53); empty if its answer has no documented layout.
 
     Raises:
         LineError: the line failed.

@@ -1,8 +1,8 @@
-"""Reading elements of any kind, all that is asked in the fewest bytes.
+"""Reading elements of any kind, in the fewest bytes.
 
-An element that the PLC refuses does not lose the others. When a request for several is refused, the PLC is
-asked how many it has (53). Past that, the first of neighbours is asked, and if it is refused, the others are
-not. All else that was refused together is divided: see ``division.py``.
+If the PLC refuses one element, the others are read all the same. When a request for several is refused, the
+PLC is asked how many it has (53). Of neighbours past that only the first is asked for; if it is refused, the
+others are not asked for. All other elements that were refused together are divided: see ``division.py``.
 """
 
 from __future__ import annotations
@@ -43,10 +43,10 @@ class ElementReading:
 
     Attributes:
         values: raw and unsigned, by element; a discrete is 0 or 1.
-        errors: of each element without a value: what the PLC said to it, or why it was not asked.
+        errors: for each element without a value: the PLC's error, or why it was not asked for.
         not_asked: those of them that were not asked.
         requests: how many requests it took.
-        ended: when the last answer was there, on the transport's clock.
+        ended: when the last answer was received, on the transport's clock.
     """
 
     values: dict[Element, int] = field(default_factory=dict)
@@ -92,7 +92,7 @@ def _each(elements: Iterable[Element | Stretch]) -> list[Element]:
 
 
 class _Reader:
-    """Reads, and finds out what is refused."""
+    """Reads, and finds the elements that are refused."""
 
     def __init__(self, plc: Plc, limits: Mapping[str, int] | None) -> None:
         self._plc = plc
@@ -104,7 +104,7 @@ class _Reader:
         self.requests = 0
 
     def read(self, elements: Sequence[Element | Stretch]) -> None:
-        """Read all of these, or know why not."""
+        """Read all of these, or find out why not."""
         requests = self._plan(elements)
         refused, unasked = self._ask(requests, stop=self._limits is None)
         if not refused:
@@ -136,7 +136,7 @@ class _Reader:
         def ask_first(division: Division) -> None:
             for first, *others in neighbours(outside):
                 if division.refuses(first):
-                    says = f"its status (53) says that the PLC has {extent_of(first, has)}"
+                    says = f"the PLC has {extent_of(first, has)} by its status (53)"
                     self.refusals.leave_out(others, f"{first} is refused, and {says}")
 
         self._search(wanted, ask_first)  # what is not refused shows that the PLC has more than it says

@@ -1,4 +1,4 @@
-"""What a user asks for in elements: ``R12``, ``R0-R99``, ``X0:16``, ``D4:f32``, ``R12:3:i16``.
+"""The elements that a user selects: ``R12``, ``R0-R99``, ``X0:16``, ``D4:f32``, ``R12:3:i16``.
 
 ::
 
@@ -30,10 +30,10 @@ _MOST: Final = 100_000
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """One element wanted.
+    """One selected element.
 
     Attributes:
-        key: what it is called in output: the element as asked for, short.
+        key: its name in output: the element as the user wrote it, short.
         element: what is read; of 32 bits for a type of 32 bits.
         type: how its bits are read.
     """
@@ -44,19 +44,17 @@ class Item:
 
 
 def parse_items(texts: Iterable[str]) -> list[Item]:
-    """Read what a user asks for; the same item twice is one.
+    """Read the selections of a user; the same item twice is one.
 
     Raises:
-        UsageError: a text is no selection; says what was expected.
+        UsageError: a text is not a selection; says what was expected.
     """
     found: dict[str, Item] = {}
     for text in texts:
         for item in parse_item(text):
             known = found.setdefault(item.key, item)
             if known != item:
-                raise UsageError(
-                    f"{item.key} is asked for twice, as {known.type.value} and {item.type.value}"
-                )
+                raise UsageError(f"{item.key} is selected twice, as {known.type.value} and {item.type.value}")
             if len(found) > _MOST:
                 raise UsageError(f"expected at most {_MOST} elements")
     return list(found.values())
@@ -71,7 +69,7 @@ def parse_item(text: str) -> list[Item]:
     match = _WRITTEN.fullmatch(text.strip())
     if match is None:
         raise UsageError(
-            f"{text!r}: expected an element, with a range or count and a type if need be, "
+            f"{text!r}: expected an element, optionally with a range or count and a type, "
             f"such as R12, R0-R99, X0:16, D4:f32"
         )
     first = Element.parse(match["first"])
@@ -124,7 +122,7 @@ def _count(text: str, first: Element, last: str | None, count: str | None, strid
     if (end.address - first.address) % stride:
         below = end.address - (end.address - first.address) % stride
         raise UsageError(
-            f"{text!r}: from {first} in steps of {stride} there is no {end}",
+            f"{text!r}: {end} is not reached from {first} in steps of {stride}",
             hint=f"the nearest below is {first.symbol}{below}",
         )
     return (end.address - first.address) // stride + 1

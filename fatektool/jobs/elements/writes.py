@@ -1,4 +1,4 @@
-"""Writing elements of any kind: in the fewest bytes, read back, what did not take named with its reason."""
+"""Writing elements of any kind: in the fewest bytes, read back, with a reason for each value not kept."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class NotTaken:
-    """A write that did not take, or that could not be checked.
+    """A value that the PLC did not keep, or that could not be read back.
 
     Attributes:
         element: which.
         wanted: what was written, raw.
-        got: what it holds instead, raw; None if it cannot be read.
+        got: what was read back, raw; None if it cannot be read.
         reason: why, as far as that is known.
-        acknowledged: False if the PLC refused the write, or it was not even tried.
+        acknowledged: False if the PLC refused the write, or it was not tried.
     """
 
     element: Element
@@ -45,7 +45,7 @@ class NotTaken:
     acknowledged: bool = True
 
     def words(self, shown: Callable[[int], str], place: str = "") -> str:
-        """What became of it.
+        """The failure in words.
 
         Args:
             shown: a raw value as the user reads it.
@@ -53,16 +53,16 @@ class NotTaken:
         """
         wanted = shown(self.wanted) + (f" in {place}" if place else "")
         if self.got is not None:
-            return f"did not take: expected {wanted}, it holds {shown(self.got)}: {self.reason}"
+            return f"not kept: expected {wanted}, read back {shown(self.got)}: {self.reason}"
         if self.acknowledged:  # the refusal is of the read-back, which nobody asked for
             return f"written and acknowledged, but it cannot be read back: {self.reason}"
-        return f"did not take: expected {wanted}: {self.reason}"
+        return f"not written: expected {wanted}: {self.reason}"
 
 
 def write_elements(
     plc: Plc, items: Sequence[tuple[Element, int]], ledger: Ledger | None = None
 ) -> list[NotTaken]:
-    """Write elements of any kind, read all back, and report what did not take.
+    """Write elements of any kind, read all back, and report what was not kept.
 
     Args:
         plc: the PLC.
@@ -75,7 +75,7 @@ def write_elements(
     """
     both = overlapping(element for element, _ in items)
     if both is not None:
-        raise UsageError(f"{both[0]} and {both[1]} overlap: what should be there?")
+        raise UsageError(f"{both[0]} and {both[1]} overlap: expected each discrete and register once")
     refused = _Writer(plc, dict(items), ledger or Ledger()).write()
     found = read_elements(plc, [element for element, _ in items])
     failed = [
@@ -98,7 +98,7 @@ def write_elements(
 
 
 class _Writer:
-    """Writes, and finds out what is refused."""
+    """Writes, and finds the elements that are refused."""
 
     def __init__(self, plc: Plc, values: dict[Element, int], ledger: Ledger) -> None:
         self._plc = plc
@@ -107,7 +107,7 @@ class _Writer:
         self._failed: list[Request[None]] = []
 
     def write(self) -> dict[Element, str]:
-        """Write all; what the PLC says of those that it refuses, or why one was not asked."""
+        """Write all; the PLC's error for each element that it refuses, or why it was not tried."""
         wanted = sorted(self._values)
         left = self._write_together(wanted)
         if not left:
@@ -158,7 +158,7 @@ def _plan(plc: Plc, items: list[tuple[Element, int]]) -> list[Request[None]]:
 
 
 def _why(plc: Plc, failed: list[tuple[Element, int]]) -> dict[Element, str]:
-    """Why writes that were acknowledged did not take.
+    """Why values of acknowledged writes were not kept.
 
     Args:
         plc: the PLC.
@@ -177,12 +177,12 @@ def _why(plc: Plc, failed: list[tuple[Element, int]]) -> dict[Element, str]:
             names = "it is" if held == [element] else f"{named(map(str, held))} {'are' if held[1:] else 'is'}"
             reasons[element] = (
                 f"{names} disabled: 'fatektool discrete set' and 'reset' still switch it, "
-                f"'discrete enable' gives it back"
+                f"'discrete enable' enables it"
             )
         elif element.symbol.endswith("X"):
             reasons[element] = "an input follows its terminal unless it is disabled"
         else:
             reasons[element] = (
-                "acknowledged, but it holds something else: read-only, or the program writes it too"
+                "acknowledged, but another value was read back: read-only, or the program writes it too"
             )
     return reasons

@@ -62,12 +62,12 @@ def load_table(data: bytes, name: str) -> Table:
         name: its name, for messages.
 
     Raises:
-        DataError: no TOML, an unknown key, a value that fits no word; says in which transaction, from 0.
+        DataError: invalid TOML, an unknown key, a value that fits no word; says in which transaction, from 0.
     """
     try:
         document = read_toml(plain_text(data))
     except ValueError as error:  # UnicodeDecodeError and TOMLDecodeError among them
-        raise DataError(f"{name}: no TOML: {error}", file=name) from error
+        raise DataError(f"{name}: invalid TOML: {error}", file=name) from error
     known = [kind.value for kind in TableKind]
     if document.get("kind") not in known:
         raise DataError(

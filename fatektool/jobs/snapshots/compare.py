@@ -1,4 +1,4 @@
-"""Two snapshots: what changed, from what to what."""
+"""The differences between two snapshots."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ class ValueChange:
 def compare_snapshots(
     a: Snapshot, b: Snapshot, *, ignore: Iterable[str] = (), tolerance: float = 0.0
 ) -> list[ValueChange]:
-    """What differs, in the order of the first, then of the second.
+    """The differences, in the order of the first snapshot, then of the second.
 
     Args:
         a: the first.
         b: the second.
-        ignore: globs of keys that do not count.
-        tolerance: how far apart two numbers may be.
+        ignore: globs of keys that are not compared.
+        tolerance: the largest difference of two numbers that is ignored.
     """
     ignored = list(ignore)
     changes = []

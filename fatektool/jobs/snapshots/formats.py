@@ -76,7 +76,7 @@ def as_prometheus(snapshot: Snapshot, name: str = "") -> str:
 
     Args:
         snapshot: the values.
-        name: tells this snapshot from others of the same PLC; empty for the only one.
+        name: distinguishes this snapshot from others of the same PLC; empty for the only one.
     """
     from fatektool.jobs.prometheus import exposition, sample
 

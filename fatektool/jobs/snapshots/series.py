@@ -1,7 +1,7 @@
 """The snapshots that a folder of dated files or an NDJSON file holds, one after the other.
 
-Years of them may lie there, so they are read one at a time. What is no whole snapshot, such as a line that a
-crash broke, and what is of another PLC is left out and counted.
+There may be years of them, so they are read one at a time. Incomplete snapshots, such as a line that a crash
+cut off, and those of other PLCs are left out and counted.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ _READABLE = {"json", "ndjson"}
 
 @dataclass(slots=True)
 class LeftOut:
-    """What was there and is not in the series.
+    """What is not in the series.
 
     Attributes:
-        broken: lines or files that are no whole snapshot.
+        broken: lines or files that are not a complete snapshot.
         foreign: snapshots of other PLCs.
     """
 
@@ -36,7 +36,7 @@ class LeftOut:
 
 
 def snapshot_series(place: Path, newest: Snapshot, left_out: LeftOut) -> Iterator[Snapshot]:
-    """The snapshots of one PLC, in the order in which they lie there.
+    """The snapshots of one PLC, in the order of the files or lines.
 
     Args:
         place: a folder of dated files, or an NDJSON file.

@@ -1,10 +1,10 @@
-"""A snapshot: what a PLC's data were at one time. ``fatektool.snapshot/1``.
+"""A snapshot: a PLC's data at one time. ``fatektool.snapshot/1``.
 
 ::
 
     time target station protocol running duration_s requests
-    values   {key: value}                       what people and scripts want
-    elements {key: {element, type, raw, unit?, scale?, offset?, comment?}}   what it takes to put it back
+    values   {key: value}                       for people and scripts
+    elements {key: {element, type, raw, unit?, scale?, offset?, comment?}}   for writing it back
     errors   {key: why its value is null}
     not_asked [key, …]                          those of errors that the PLC was not asked for, if any
 """
@@ -198,7 +198,7 @@ def parse_snapshot(data: bytes, name: str, note: Callable[[str], None] = ignore)
     Args:
         data: the file's bytes.
         name: its name, for messages.
-        note: is told when the file's last line is broken, and an earlier one is taken.
+        note: gets a message if the last line is incomplete and an earlier one is used.
 
     Raises:
         DataError: it is none, or damaged; says what.
@@ -207,8 +207,8 @@ def parse_snapshot(data: bytes, name: str, note: Callable[[str], None] = ignore)
     if not isinstance(document, dict) or document.get("schema") != SCHEMA:
         found = document.get("schema") if isinstance(document, dict) else None
         raise DataError(
-            f"{name}: no snapshot: expected schema {SCHEMA!r}, got {found!r:.80}",
-            hint="is it the right file?",
+            f"{name}: not a snapshot: expected schema {SCHEMA!r}, got {found!r:.80}",
+            hint="check the file name",
             file=name,
         )
     for key, holds in _CHECKS.items():
@@ -216,7 +216,7 @@ def parse_snapshot(data: bytes, name: str, note: Callable[[str], None] = ignore)
             raise DataError(f"{name}: {key} is missing or damaged", file=name)
     if set(document["values"]) != set(document["elements"]):
         key = min(set(document["values"]) ^ set(document["elements"]))
-        raise DataError(f"{name}: {key!r} stands in one of values and elements only", file=name)
+        raise DataError(f"{name}: {key!r} is in only one of values and elements", file=name)
     for key, part in document["elements"].items():
         _check(part, document["values"][key], f"{name}: element {key!r}")
     not_asked = document.get("not_asked", [])
@@ -240,11 +240,11 @@ def _document(data: bytes, name: str, note: Callable[[str], None]) -> object:
             continue
         if isinstance(document, dict) and "schema" in document:
             if number:
-                taken = f"the snapshot of {document.get('time')} is taken instead"
-                note(f"{name}: the last line is broken: {taken}")
+                taken = f"the snapshot of {document.get('time')} is used instead"
+                note(f"{name}: the last line is incomplete: {taken}")
             return document
     raise DataError(
-        f"{name}: no snapshot, or a damaged one: {first}", hint="is it the right file?", file=name
+        f"{name}: not a snapshot, or a damaged one: {first}", hint="check the file name", file=name
     ) from first
 
 
@@ -305,8 +305,8 @@ def _check(part: object, value: Value | None, where: str) -> None:
         expected = None
     if expected != value or isinstance(expected, bool) != isinstance(value, bool):
         raise DataError(
-            f"{where}: its value is {value!r:.40}, and its raw bits {raw} say {expected!r:.40}",
-            hint="the raw bits are what is put back: change both, or use 'fatektool write'",
+            f"{where}: its value is {value!r:.40}, but its raw bits {raw} are {expected!r:.40}",
+            hint="the raw bits are what is written back: change both, or use 'fatektool write'",
         )
 
 
@@ -315,7 +315,7 @@ def load_snapshot(path: Path, note: Callable[[str], None] = ignore) -> Snapshot:
 
     Args:
         path: the file.
-        note: is told when the file's last line is broken, and an earlier one is taken.
+        note: gets a message if the last line is incomplete and an earlier one is used.
 
     Raises:
         UsageError: there is no such file.

@@ -1,8 +1,8 @@
-"""What a snapshot holds: items with names, types, scales, units, from a TOML file or the command line.
+"""The items of a snapshot with names, types, scales, units, from a TOML file or the command line.
 
 ::
 
-    interval_s = 60                      # optional: the pace of 'watch', unless --interval says another
+    interval_s = 60                      # optional: the interval of 'watch', unless --interval is given
 
     [[item]]
     element = "R12"                      # as on the command line: R12, D4:f32, R0-R9, M0:16
@@ -66,7 +66,7 @@ class Spec:
 
     Attributes:
         items: in the file's order.
-        interval_s: the pace of ``watch``; None if the file does not say.
+        interval_s: the interval of ``watch``; None if the file has none.
     """
 
     items: list[SpecItem]
@@ -87,7 +87,7 @@ def load_spec(path: Path, groups: Iterable[str] = ()) -> Spec:
 
     Raises:
         UsageError: there is no such file.
-        DataError: no TOML, a wrong key or value; says which item.
+        DataError: invalid TOML, a wrong key or value; says which item.
     """
     return parse_spec(read_bounded(path, MAX_SPEC), str(path), groups)
 
@@ -101,12 +101,12 @@ def parse_spec(data: bytes, name: str, groups: Iterable[str] = ()) -> Spec:
         groups: only items of these groups; all if empty.
 
     Raises:
-        DataError: no TOML, a wrong key or value; says which item.
+        DataError: invalid TOML, a wrong key or value; says which item.
     """
     try:
         document = read_toml(plain_text(data))
     except ValueError as error:  # UnicodeDecodeError and TOMLDecodeError among them
-        raise DataError(f"{name}: no TOML: {error}") from error
+        raise DataError(f"{name}: invalid TOML: {error}") from error
     unknown = set(document) - {"item", "interval_s"}
     entries = document.get("item")
     if unknown or not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
@@ -123,7 +123,7 @@ def parse_spec(data: bytes, name: str, groups: Iterable[str] = ()) -> Spec:
                 continue
             if found.setdefault(item.item.key, item) != item:
                 raise DataError(
-                    f"{name}: item {number}: {item.item.key!r} is there already: give it another name"
+                    f"{name}: item {number}: {item.item.key!r} is used twice: give it another name"
                 )
             if len(found) > MAX_ITEMS:
                 raise DataError(f"{name}: expected at most {MAX_ITEMS} elements")
@@ -199,16 +199,16 @@ def _short(value: object) -> str:
 
 
 def everything(system: System) -> list[Stretch]:
-    """All that 53 says the PLC has: discretes, registers, timers and counters.
+    """All elements that the PLC has by 53: discretes, registers, timers and counters.
 
-    L relays have no element on the link.
+    L relays cannot be read over the link.
     """
     firsts = [(Element(symbol, 0), count) for symbol, count in limits(system).items()]
     return [Stretch(first, min(count, first.kind.last + 1)) for first, count in firsts if count]
 
 
 def items_in(stretches: Iterable[Stretch]) -> list[SpecItem]:
-    """An item for every element of some stretches, of the type that it has unless another is named."""
+    """An item for every element of some stretches, with the default type of its kind."""
     return [
         SpecItem(Item(str(element), element, kind))
         for stretch in stretches

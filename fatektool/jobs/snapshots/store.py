@@ -1,8 +1,8 @@
 """Snapshots on disk, for years, from cron: dated files in a folder, or lines at the end of a file.
 
-A dated file is whole or absent. A line is appended in one write under a lock, so that two processes never mix
-theirs; a line that a crash left unfinished is closed off by the next one. ``--keep`` drops what is too old,
-counted in snapshots or in days.
+A dated file is complete or absent. A line is appended in one write under a lock, so that two processes never
+mix their lines; after a line that a crash left incomplete the next one begins on a new line. ``--keep``
+removes old snapshots, by number or by days.
 """
 
 from __future__ import annotations
@@ -97,12 +97,12 @@ def save_dated(
 
 @contextmanager
 def _dropping(path: Path) -> Iterator[None]:
-    """What fails here fails behind the snapshot, which is written: a warning."""
+    """A failure here is a warning: the snapshot is already written."""
     try:
         yield
     except (OSError, FatektoolError) as error:
         why = error if isinstance(error, FatektoolError) else error.strerror or error
-        message = f"the snapshot is written, but old ones in {path} are not dropped: {why}"
+        message = f"the snapshot is written, but old ones in {path} could not be removed: {why}"
         warnings.warn(message, FileWarning, stacklevel=3)
 
 
@@ -143,12 +143,12 @@ def append_line(
         keep: what is kept of the file's snapshots; None for all.
         now: the present, for tests.
         wait_s: how long to wait for another process that appends.
-        waiting: is told who that is.
+        waiting: gets a note about that process.
 
     Raises:
         UsageError: the file cannot be written, or holds something else.
         DataError: the disk is full or broken; the file is as it was.
-        PortBusy: another process holds the file for long.
+        PortBusy: another process locks the file for too long.
 
     Warns:
         FileWarning: the line is written, and old ones could not be dropped.
@@ -187,7 +187,7 @@ def require_lines(path: Path, keep: Keep | None) -> Path:
     if not real.exists():
         return real
     if not os.access(real, os.W_OK):
-        raise UsageError(f"{path} is not writable", hint="check its rights", file=str(path))
+        raise UsageError(f"{path} is not writable", hint="check its permissions", file=str(path))
     try:
         with real.open("rb") as file:
             start = file.read(len(_START)).strip()
@@ -195,7 +195,7 @@ def require_lines(path: Path, keep: Keep | None) -> Path:
         raise file_error("read", path, error) from error
     if not _START.startswith(start) and not _OBJECT.match(start):
         raise UsageError(
-            f"{path} holds something else than snapshots, a line each, and is kept as it is",
+            f"{path} has other content than snapshots, one per line, and is not changed",
             hint="name another file",
             file=str(path),
         )

@@ -176,7 +176,7 @@ def test_what_the_plc_refuses_is_named_and_the_rest_is_written(plant: Plant, pla
     assert "warning: not written: X0: inputs follow their terminals" in again.err
     assert "warning: not written: R9000: no value in the snapshot" in again.err
     assert "warning: D3072: not written: the PLC refused" in again.err
-    assert "warning: Y3: did not take: expected 1 in Y3, it holds 0: it is disabled" in again.err
+    assert "warning: Y3: not kept: expected 1 in Y3, read back 0: it is disabled" in again.err
 
 
 def test_names_of_a_specification(plant: Plant, place: Path) -> None:
@@ -193,7 +193,7 @@ def test_names_of_a_specification(plant: Plant, place: Path) -> None:
     done = plant.cli("snapshot", "apply", "a.json", "--yes")
     assert done.code == 4
     assert 'oil, "hot"  22 -> 21.5' in done.err
-    assert "warning: in[1]: did not take: expected 0000 in R3841, it holds 0005" in done.err
+    assert "warning: in[1]: not kept: expected 0000 in R3841, read back 0005" in done.err
     assert plant.cli("snapshot", "apply", "a.json", "--yes", "--only", "oil*").code == 0
     error_of(plant.cli("snapshot", "apply", "a.json", "--yes", "--only", "water*"), 5)
 
@@ -306,7 +306,7 @@ def test_no_answer_before_the_first_write(plant: Plant, place: Path, monkeypatch
     monkeypatch.setattr("fatektool.jobs.elements.planned.write_elements", silent)
     done = plant.cli("snapshot", "apply", "a.json", "--yes")
     assert done.code == 3
-    assert "may be written" not in done.err
+    assert "may have been written" not in done.err
     assert not safety(place)
 
 
@@ -349,6 +349,6 @@ def test_ndjson_is_applied_from_its_last_line(plant: Plant, place: Path) -> None
         file.write('{"schema":"fatektool.snapsh')
     done = plant.cli("snapshot", "apply", "a.ndjson", "--yes")
     assert done.code == 0
-    assert "the last line is broken" in done.err
+    assert "the last line is incomplete" in done.err
     assert plant.register(0) == 2
     assert read_elements(small().plc, [parse_items(["R0"])[0].element]).errors == {}

@@ -110,7 +110,7 @@ def test_write_says_what_did_not_take(plant: Plant) -> None:
     where = f"station 1 on {plant.target} (FBE, 13K steps, STOP)"
     assert done.out == f"2 of 8 elements written and read back\n{where}\n"
     assert (
-        "warning: R9000: did not take: expected 1: refused, and it cannot be read either: the PLC refused"
+        "warning: R9000: not written: expected 1: refused, and it cannot be read either: the PLC refused"
         in done.err
     )
 
@@ -118,14 +118,14 @@ def test_write_says_what_did_not_take(plant: Plant) -> None:
 def test_a_line_that_dies_while_writing(plant: Plant, monkeypatch: pytest.MonkeyPatch) -> None:
     cut_after(monkeypatch, 2)
     line = error_of(plant.cli("write", "R0-R199=7"), 3)
-    assert "some of the 200 values may be written" in line
+    assert "some of the 200 values may have been written" in line
     assert plant.register(0) == 7
     assert plant.register(199) == 0
 
 
 def test_a_line_that_is_dead_from_the_first_request(plant: Plant, monkeypatch: pytest.MonkeyPatch) -> None:
     cut_after(monkeypatch, 0)
-    assert "the value may be written" in error_of(plant.cli("write", "R0=7"), 3)
+    assert "the value may have been written" in error_of(plant.cli("write", "R0=7"), 3)
 
 
 def test_a_line_that_dies_before_the_first_write(plant: Plant, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -140,7 +140,7 @@ def test_a_line_that_dies_before_the_first_write(plant: Plant, monkeypatch: pyte
     monkeypatch.setattr(Receiver, "__init__", needing_a_fence)
     line = error_of(plant.cli("write", "R0=7"), 3)
     assert "nothing was written" in line
-    assert "may be written" not in line
+    assert "may have been written" not in line
 
 
 def test_nan_and_refused_are_null_with_an_error(plant: Plant) -> None:
@@ -159,7 +159,7 @@ def test_many_refused_are_few_words(plant: Plant) -> None:
     done = plant.cli("read", "R8000-R9999")
     assert done.code == 4
     assert done.err.count("\n") == 2
-    why = "R8072 is refused, and its status (53) says that the PLC has R0 to R8071"
+    why = "R8072 is refused, and the PLC has R0 to R8071 by its status (53)"
     assert done.err.endswith(f"warning: R8073 to R9999 (1927): not asked: {why}\n")
 
 
@@ -185,7 +185,7 @@ def test_forcing(plant: Plant) -> None:
 def test_a_force_that_does_not_take(plant: Plant) -> None:
     done = plant.cli("discrete", "set", "X0")
     assert done.code == 4
-    assert "X0: did not take: an input follows its terminal; 'fatektool discrete disable X0'" in done.err
+    assert "X0: no effect: an input follows its terminal; 'fatektool discrete disable X0'" in done.err
     document = plant.json("discrete", "discrete", "set", "Y0", "Y9000", "X1", code=4)
     assert document["discretes"]["Y0"] == {"on": True, "disabled": False}
     assert list(document["not_taken"]) == ["X1"]

@@ -93,7 +93,7 @@ def test_a_line_that_comes_and_goes(plant: Plant, monkeypatch: pytest.MonkeyPatc
     done = plant.cli("watch", "R0", "--count", "6", "--retries", "0")
     assert done.code == 0
     assert len(rounds(done.out)) == 6
-    assert "trying on" in done.err
+    assert "trying again" in done.err
 
 
 def test_a_line_that_stays_dead(plant: Plant, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -74,7 +74,7 @@ def test_single_discretes(line: Line) -> None:
     assert line("discrete", "list", "Y7", "M5").out.split() == ["Y7", "off", "M5", "on"]
     failed = line("discrete", "set", "X3")
     assert failed.code == 4
-    assert "X3: did not take: acknowledged, and nothing changed: it is disabled, an input" in failed.err
+    assert "X3: no effect: acknowledged, but nothing changed: it is disabled, an input" in failed.err
 
 
 def test_snapshots_and_watch(line: Line, place: Path) -> None:

@@ -57,9 +57,7 @@ class Writer:
 
 def _of_values(words: str, copies: str) -> Writer:
     undo = ("snapshot", "apply")
-    return Writer(
-        tuple(words.split()), f"{copies}.safety-*", "safety_snapshot", "values", undo, "did not take"
-    )
+    return Writer(tuple(words.split()), f"{copies}.safety-*", "safety_snapshot", "values", undo, "not kept")
 
 
 WRITERS: Final = {

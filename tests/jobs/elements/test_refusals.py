@@ -143,7 +143,7 @@ def test_elements_that_53_excludes_are_asked_once_at_the_edge(monkeypatch: pytes
     assert asked_alone(sent) == {8072}
     assert reading.requests <= 127 + 5
     assert reading.errors[Element("R", 9999)] == (
-        "not asked: R8072 is refused, and its status (53) says that the PLC has R0 to R8071"
+        "not asked: R8072 is refused, and the PLC has R0 to R8071 by its status (53)"
     )
 
 
@@ -264,7 +264,7 @@ def test_the_command_tells_what_was_not_asked(plant: Plant, cli: Cli) -> None:
     done = cli("read", "R8070-R8090", "M0", "-p", plant.target)
     refused, left_out = done.err.splitlines()
     assert refused.startswith("warning: R8072: the PLC refused to read registers R8072 (46): error A")
-    why = "R8072 is refused, and its status (53) says that the PLC has R0 to R8071"
+    why = "R8072 is refused, and the PLC has R0 to R8071 by its status (53)"
     assert left_out == f"warning: R8073 to R8090 (18): not asked: {why}"
     snapshot = plant.json("snapshot", "snapshot", "R8070-R8090", "-p", plant.target, code=4)
     assert snapshot["not_asked"] == document["not_asked"]

@@ -82,7 +82,7 @@ def test_no_selection(text: str) -> None:
     with pytest.raises(UsageError) as caught:
         parse_item(text)
     assert caught.value.message == (
-        f"{text!r}: expected an element, with a range or count and a type if need be, "
+        f"{text!r}: expected an element, optionally with a range or count and a type, "
         "such as R12, R0-R99, X0:16, D4:f32"
     )
 
@@ -112,9 +112,9 @@ def test_no_selection(text: str) -> None:
         ("R9-R0", "'R9-R0': expected a range of one kind, from the lower to the higher address"),
         ("R0-D9", "'R0-D9': expected a range of one kind, from the lower to the higher address"),
         ("R0-DR8", "'R0-DR8': expected a range of one kind, from the lower to the higher address"),
-        ("DR0-DR3", "'DR0-DR3': from DR0 in steps of 2 there is no DR3; the nearest below is DR2"),
-        ("WM0-WM24", "'WM0-WM24': from WM0 in steps of 16 there is no WM24; the nearest below is WM16"),
-        ("D0-D3:f32", "'D0-D3:f32': from D0 in steps of 2 there is no D3; the nearest below is D2"),
+        ("DR0-DR3", "'DR0-DR3': DR3 is not reached from DR0 in steps of 2; the nearest below is DR2"),
+        ("WM0-WM24", "'WM0-WM24': WM24 is not reached from WM0 in steps of 16; the nearest below is WM16"),
+        ("D0-D3:f32", "'D0-D3:f32': D3 is not reached from D0 in steps of 2; the nearest below is D2"),
         ("X0:u16", "X0: u16 does not fit 1 bit: expected bool"),
         ("X0:f32", "X0: f32 does not fit 1 bit: expected bool"),
         ("M0:bcd", "M0: bcd does not fit 1 bit: expected bool"),
@@ -165,7 +165,7 @@ def test_the_same_twice_is_one() -> None:
 def test_one_element_as_two_types() -> None:
     with pytest.raises(UsageError) as caught:
         parse_items(["D4:f32", "D4"])
-    assert caught.value.message == "D4 is asked for twice, as f32 and i16"
+    assert caught.value.message == "D4 is selected twice, as f32 and i16"
 
 
 def test_elements_that_share_registers_may_be_read() -> None:

@@ -143,14 +143,14 @@ WRONG = [
     ),
     ("md0", '"md0"', '"md4"', "kind: expected one of md0, md1, md2, md3, mbus, got 'md4'"),
     ("md0", '"md0"', '["md0"]', "kind: expected one of"),
-    ("md0", 'kind = "md0"', 'kind = "md0', "no TOML: .*line 1"),
+    ("md0", 'kind = "md0"', 'kind = "md0', "invalid TOML: .*line 1"),
     (
         "md0",
         'kind = "md0"',
         'kind = "md0"\nmark = 1',
         "unknown key 'mark': expected one of kind, transaction, co",
     ),
-    ("md0", "[[transaction]]", "[transaction]", "no TOML"),
+    ("md0", "[[transaction]]", "[transaction]", "invalid TOML"),
     ("md3", "[[transaction]]", "[[transactions]]", "unknown key 'transactions'"),
     (
         "md0",

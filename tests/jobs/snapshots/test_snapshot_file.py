@@ -151,11 +151,11 @@ def test_a_broken_last_line_gives_the_one_before_and_says_so() -> None:
     told: list[str] = []
     data = as_ndjson(one).encode() + as_ndjson(two).encode() + as_ndjson(one).encode()[:80]
     assert parse_snapshot(data, "x.ndjson", told.append) == two
-    assert told == [f"x.ndjson: the last line is broken: the snapshot of {two.time} is taken instead"]
+    assert told == [f"x.ndjson: the last line is incomplete: the snapshot of {two.time} is used instead"]
     with pytest.raises(DataError):
         parse_snapshot(as_ndjson(one).encode()[:80], "x", told.append)
     damaged = as_ndjson(two).replace('"raw":"0000"', '"raw":"0001"').encode()
-    with pytest.raises(DataError, match="raw bits 0001 say 1"):  # whole, but not true: no way round it
+    with pytest.raises(DataError, match="raw bits 0001 are 1"):  # whole, but not true: no way round it
         parse_snapshot(as_ndjson(one).encode() + damaged, "x", told.append)
     assert len(told) == 1
 
@@ -213,7 +213,7 @@ def test_diff_of_damaged_and_missing_files(cli: Cli, place: Path) -> None:
     (place / "c.ndjson").write_bytes(as_ndjson(GOOD).encode() + b'{"schema":"fatek')
     done = cli("snapshot", "diff", "a.json", "c.ndjson")
     assert done.code == 0
-    assert done.err.startswith("warning: c.ndjson: the last line is broken")
+    assert done.err.startswith("warning: c.ndjson: the last line is incomplete")
 
 
 def test_the_difference_between_no_value_and_none_there(cli: Cli, place: Path) -> None:

@@ -88,7 +88,7 @@ def test_groups() -> None:
         ("[[item]]", "item 1: expected element"),
         ("[[item]]\nelement='R0'\ncolour='red'", "unknown key 'colour'"),
         ("[[item]]\nelement='R0'\n[[item]]\nelement='Q1'", "item 2"),
-        ("[[item]]\nelement='R0'\n[[item]]\nelement='R0:u16'", "item 2: 'R0' is there already"),
+        ("[[item]]\nelement='R0'\n[[item]]\nelement='R0:u16'", "item 2: 'R0' is used twice"),
         ("[[item]]\nelement='R0'\nname=''", "name"),
         ('[[item]]\nelement="R0"\nname="a\\nb"', "name"),
         ("[[item]]\nelement='R0'\nscale='x'", "scale"),
@@ -110,7 +110,7 @@ def test_groups() -> None:
         ("interval_s='x'\n[[item]]\nelement='R0'", "interval_s"),
         ("interval_s=1e9\n[[item]]\nelement='R0'", "interval_s"),
         ("".join(f"[[item]]\nelement='R0:60000'\nname='n{n}'\n" for n in range(3)), "at most 100000"),
-        ("a" + "=[" * 5000, "no TOML"),
+        ("a" + "=[" * 5000, "invalid TOML"),
     ],
 )
 def test_what_is_wrong_is_said(text: str, said: str) -> None:
@@ -145,7 +145,7 @@ def test_on_the_command_line(plant: Plant, place: Path) -> None:
     assert document["values"] == {"pressure": -20.0}
     error_of(plant.cli("snapshot", "--spec", "none.toml"), 2)
     (place / "bad.toml").write_bytes(b"\xff")
-    assert "bad.toml: no TOML" in error_of(plant.cli("snapshot", "--spec", "bad.toml"), 5)
+    assert "bad.toml: invalid TOML" in error_of(plant.cli("snapshot", "--spec", "bad.toml"), 5)
     for words in (
         [],
         ["R0", "--all"],

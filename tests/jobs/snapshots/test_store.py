@@ -402,5 +402,5 @@ def test_a_folder_that_may_not_be_listed(unlisted: Path) -> None:
 def test_old_snapshots_that_cannot_be_dropped(unlisted: Path) -> None:
     done = as_nobody(unlisted, "snapshot", "R0:3", "-p", "sim:", "-o", f"{unlisted}/", "--keep", "1")
     assert done.returncode == 0, done.stderr
-    assert f"warning: the snapshot is written, but old ones in {unlisted} are not dropped" in done.stderr
+    assert f"warning: the snapshot is written, but old ones in {unlisted} could not be removed" in done.stderr
     assert len(list(unlisted.iterdir())) == 1

@@ -24,13 +24,18 @@ if TYPE_CHECKING:
 @click.command("diff", epilog="Example: fatektool snapshot diff monday.json tuesday.json --ignore 'RT*'")
 @click.argument("a", type=PATH)
 @click.argument("b", type=PATH)
-@click.option("--ignore", multiple=True, metavar="GLOB", help="Keys that do not count; repeat for more.")
-@click.option("--tolerance", type=click.FloatRange(0), default=0.0, help="How far apart two numbers may be.")
+@click.option("--ignore", multiple=True, metavar="GLOB", help="Keys that are not compared; repeat for more.")
+@click.option(
+    "--tolerance",
+    type=click.FloatRange(0),
+    default=0.0,
+    help="Largest difference of two numbers that is ignored.",
+)
 @voice_options
 def diff_command(a: Path, b: Path, voice: Voice, *, ignore: tuple[str, ...], tolerance: float) -> int:
     """Compare the snapshots A and B: exit 0 if nothing differs, 1 if something does. Needs no PLC."""
     if isnan(tolerance):
-        raise UsageError("--tolerance nan: expected a number from 0")
+        raise UsageError("--tolerance nan: expected a number, 0 or more")
     one, other = load_snapshot(a, voice.warn), load_snapshot(b, voice.warn)
     changes = compare_snapshots(one, other, ignore=ignore, tolerance=tolerance)
     document = snapshot_diff_document((a, one), (b, other), changes)

@@ -40,7 +40,7 @@ F = TypeVar("F", bound="Callable[..., Any]")
 
 
 def either_format(function: F) -> F:
-    """``--format`` names the snapshot's form or the line's; both may be given, in any order."""
+    """``--format`` is that of the snapshot or of the line; both may be given, in any order."""
 
     @wraps(function)
     def with_formats(*args: Any, formats: tuple[str, ...], **rest: Any) -> Any:
@@ -64,26 +64,26 @@ def either_format(function: F) -> F:
 @click.command(
     "take",
     epilog="Example: fatektool snapshot --spec press.toml -p /dev/ttyUSB0 --append press.ndjson --keep 90d",
-    help=f"Read data from the PLC, in the fewest bytes.\n\n{SELECTION}",
+    help=f"Read data from the PLC and save it.\n\n{SELECTION}",
 )
 @click.argument("elements", nargs=-1)
 @spec_options
-@click.option("--all", "whole", is_flag=True, help="All that the PLC says it has.")
+@click.option("--all", "whole", is_flag=True, help="All elements that the PLC has, by its status (53).")
 @click.option(
     "-o",
     "--output",
     type=str,
     metavar="FILE|DIR/",
-    help="Into FILE, or into a dated file in DIR; else, and for -, stdout.",
+    help="Write to FILE, or to a dated file in DIR; without it, and for -, to stdout.",
 )
-@click.option("--append", type=PATH, metavar="FILE.ndjson", help="As one line at the end of FILE.")
+@click.option("--append", type=PATH, metavar="FILE.ndjson", help="Append one line to FILE.")
 @click.option(
     "--format",
     "formats",
     multiple=True,
     metavar="json|ndjson|csv|influx|prometheus",
-    help="How the snapshot is written, by default as FILE's ending says, else json; "
-    "the line's format, such as 8N1, may stand here too.",
+    help="Format of the snapshot, by default that of FILE's ending, else json; "
+    "the line's format, such as 8N1, can be given here too.",
 )
 @click.option(
     "--keep", metavar="N|DAYSd", help="Keep N snapshots, or those of so many days, in DIR or FILE.ndjson."
@@ -150,7 +150,7 @@ def take_command(
 
 
 def _name(output: str | None, folder: Path | None, spec: Path | None) -> str:
-    """What tells a snapshot's figures from another's of the same PLC: the file, or the specification."""
+    """What distinguishes the metrics of two snapshots of one PLC: the file, or the specification."""
     if folder is not None:
         return folder.name
     if output is not None:
@@ -159,7 +159,7 @@ def _name(output: str | None, folder: Path | None, spec: Path | None) -> str:
 
 
 def _form(form: str | None, voice: Voice, output: str | None, append: Path | None, *, to_stdout: bool) -> str:
-    """How the snapshot is written: as ``--format`` says, else as the name of FILE does, else as JSON.
+    """The format of the snapshot: of ``--format``, else of FILE's ending, else JSON.
 
     Raises:
         UsageError: a format that nothing would be written in.
@@ -169,7 +169,7 @@ def _form(form: str | None, voice: Voice, output: str | None, append: Path | Non
     if append is not None:
         ending = append.suffix.lower().removeprefix(".")
         if ending in SUFFIXES.values() and ending not in _SERIES:
-            raise UsageError(f"--append {append}: lines of NDJSON", hint="expected a name such as x.ndjson")
+            raise UsageError(f"--append {append} writes NDJSON: expected a name such as x.ndjson")
         if form not in {None, "ndjson"} and output is None and not to_stdout:
             raise UsageError(
                 f"--append writes NDJSON, which does not go with --format {form}",
@@ -186,7 +186,7 @@ def _form(form: str | None, voice: Voice, output: str | None, append: Path | Non
 def _require_places(
     output: str | None, folder: Path | None, append: Path | None, kept: Keep | None, voice: Voice
 ) -> None:
-    """Check, before the PLC is asked, that the snapshot can be put where it shall go."""
+    """Check, before the PLC is asked, that the snapshot can be written."""
     if folder is not None:
         require_folder_for(folder, voice)
     if append is not None:
@@ -196,10 +196,10 @@ def _require_places(
 
 
 def _require_output(path: Path) -> None:
-    """Check that a snapshot can be put here, and that no program is lost by it.
+    """Check that a snapshot can be written here, and does not replace the backup of a program.
 
     Raises:
-        UsageError: it cannot, or a backup lies there.
+        UsageError: it cannot be written, or there is a backup.
     """
     require_free(path)
     real = Path(os.path.realpath(path))

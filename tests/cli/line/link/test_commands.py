@@ -187,7 +187,7 @@ def test_what_does_not_take_is_named(fbs: Plant) -> None:
     Path("t.toml").write_text(WRITTEN["md1"], encoding="utf-8")
     done = fbs.cli("link", "table", "write", "t.toml", "R3838", "--yes", "--force")
     assert done.code == 4
-    assert "warning: R3840: did not take: expected 0004, it holds 0000" in done.err
+    assert "warning: R3840: not kept: expected 0004, read back 0000" in done.err
     assert done.out.startswith("2 of 7 values written and read back")
 
 
