@@ -26,6 +26,8 @@ from fatektool.exchange.receiver import READ_BYTES
 from fatektool.protocol.commands import Loopback
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from fatektool.exchange.receiver import Receiver
     from fatektool.exchange.sender import Sender
     from fatektool.exchange.sent import Sent
@@ -143,8 +145,7 @@ class Attempts:
         echo_due = state.echoes is True
         wire_s = (len(sent.raw) + sent.size) * state.byte_time_s
         began = state.transport.clock()
-        while True:
-            frame = self._next_frame(sent.size, began + wire_s)
+        for frame in self._frames(sent.size, began + wire_s):
             if frame.raw == sent.raw and (echo_due or not may_pass):
                 self._note_echo()
                 echo_due = False
@@ -165,6 +166,7 @@ class Attempts:
                     continue
                 self._note_answer(request, sent, frame)
                 return answer
+        raise TransportTimeout(f"{state.transport.name}: no answer in time")
 
     def _note_answer(self, request: Request[Any], sent: Sent, frame: Frame) -> None:
         state = self._state
@@ -176,14 +178,18 @@ class Attempts:
             if not _like_echo(beside, sent.raw):
                 state.echoes = False
 
-    def _next_frame(self, size: int, from_s: float) -> Frame:
-        """The next whole frame; bad bytes before it are dropped and counted.
+    def _frames(self, size: int, from_s: float) -> Iterator[Frame]:
+        """The whole frames that are received in time; bad bytes between them are dropped and counted.
 
-        Bytes that arrived in time are accepted, even if a busy computer delayed this process.
+        Bytes that arrived in time are accepted, even if a busy computer delayed this process: once the time
+        is over, what is there is read, in one piece.
 
         Args:
             size: of the answer, in bytes.
             from_s: when the PLC's time begins.
+
+        Raises:
+            FrameError: the answer, damaged.
         """
         state, receiver, transport = self._state, self._receiver, self._state.transport
         looked = False
@@ -192,16 +198,17 @@ class Attempts:
                 frame = receiver.decoder.next_frame()
             except FrameError as error:
                 receiver.note_bad_bytes(error)
-                if error.checksum and len(error.raw) == size:  # the answer, damaged: waiting is useless
+                if error.checksum and len(error.raw) == size:  # waiting is useless
                     raise
                 continue
             if frame is not None:
-                return frame
+                yield frame
+                continue
             rest = max(0.0, from_s + state.wait_s - transport.clock())
             if looked and not rest:
                 if receiver.decoder.expect_no_more():
                     continue
-                raise TransportTimeout(f"{transport.name}: no answer in time")
+                return
             looked = not rest
             try:
                 data = transport.read(READ_BYTES, rest)

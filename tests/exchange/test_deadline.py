@@ -5,8 +5,10 @@ from __future__ import annotations
 import pytest
 
 from fatektool.errors import NoAnswer, TransportTimeout
+from fatektool.exchange.link import Link
 from fatektool.protocol.commands import Loopback, ReadBriefStatus, ReadPage, ReadRegisters
 from fatektool.protocol.elements import Element
+from fatektool.protocol.fatek.facon.codec import FACON
 from fatektool.transport.base import LineSettings
 from fatektool.transport.memory import MemoryTransport
 from tests.exchange.peer import (
@@ -17,6 +19,7 @@ from tests.exchange.peer import (
     Script,
     ask_page,
     fences,
+    frame,
     linked,
     page_answer,
     register,
@@ -172,6 +175,43 @@ def test_endless_answers_to_nothing_end_at_the_deadline() -> None:
     with pytest.raises(NoAnswer):
         link.ask(Loopback(b"A" * 8))
     assert link.transport.clock() < 4 * 0.6
+
+
+class Flood(MemoryTransport):
+    """A medium on which there is always something to read, as fast as it is read; a read takes a moment."""
+
+    def __init__(self, piece: bytes) -> None:
+        super().__init__(Script())
+        self.piece = piece
+        self.reads = 0
+
+    def read(self, max_bytes: int, timeout_s: float) -> bytes:  # noqa: ARG002  # it never waits
+        self.reads += 1
+        assert self.reads < 20_000, "it goes on for ever"
+        self._now += 0.002
+        return self.piece[:max_bytes]
+
+
+@pytest.mark.parametrize(
+    "piece",
+    [
+        b"\x00",
+        b"\x02",
+        b"\x02" * 64,
+        register(7)[:-3] + b"00\x03",  # its checksum is wrong
+        register(7),
+        register(7) * 9,
+        frame("460007", station=2),
+        frame("4EABCD"),
+        frame("400"),
+    ],
+)
+def test_a_flood_ends_at_the_deadline(piece: bytes) -> None:
+    flood = Flood(piece)
+    link = Link(flood, FACON, 1, LineSettings(), retries=2)
+    with pytest.raises(NoAnswer):
+        link.ask(Loopback(b"A" * 8))
+    assert link.transport.clock() < 10
 
 
 def test_a_clean_answer_costs_no_waiting() -> None:
