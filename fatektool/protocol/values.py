@@ -1,4 +1,4 @@
-"""Raw bits as typed values and back: ``u16``, ``i16``, ``bcd``, ``hex``, ``u32``, ``i32``, ``f32``, ``bool``.
+"""Raw bits as typed values and back: ``u16``, ``i16``, ``bcd``, ``hex``, ``u32``, ``i32``, ``f32``, ``str``.
 
 A PLC knows bits alone; what they mean is the program author's. So a type is asked for with the element.
 Without one a register is a signed number, as the PLC's own functions take it; a word of discretes (``WM8``)
@@ -14,9 +14,11 @@ from enum import Enum
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import DataError, UsageError
+from fatektool.protocol.texts import characters, text_bits
 
 if TYPE_CHECKING:
     from fatektool.protocol.elements import ElementKind
+    from fatektool.protocol.texts import Order
 
 Value = bool | int | float | str
 
@@ -32,6 +34,8 @@ class ValueType(Enum):
     F32 = "f32"
     BCD = "bcd"
     HEX = "hex"
+    STR = "str"
+    STR_HIGH = "strh"
 
     @property
     def bits(self) -> int | None:
@@ -48,8 +52,15 @@ _BITS: Final = {
     ValueType.F32: 32,
     ValueType.BCD: None,
     ValueType.HEX: None,
+    ValueType.STR: None,
+    ValueType.STR_HIGH: None,
 }
-NUMBERS: Final = frozenset(ValueType) - {ValueType.BOOL, ValueType.HEX}
+TEXTS: Final[dict[ValueType | None, Order]] = {
+    ValueType.STR: "little",
+    ValueType.STR_HIGH: "big",
+}
+"""Characters, two in a register: the first is in the low byte, or in the high one."""
+NUMBERS: Final = frozenset(ValueType) - {ValueType.BOOL, ValueType.HEX, *TEXTS}
 """The types whose values are numbers, which can be scaled."""
 _ON: Final = {"on": 1, "true": 1, "1": 1, "off": 0, "false": 0, "0": 0}
 _INTEGER: Final = re.compile(r"[+-]?(0[xX][0-9A-Fa-f]+|0[bB][01]+|[0-9]+)", re.ASCII)
@@ -85,10 +96,7 @@ def decode(raw: int, kind: ValueType, bits: int) -> Value:
         case ValueType.I16 | ValueType.I32:
             return raw - (1 << bits) if raw >> (bits - 1) else raw
         case ValueType.F32:
-            number: float = struct.unpack(">f", raw.to_bytes(4, "big"))[0]
-            if not math.isfinite(number):
-                raise DataError(f"{raw:08X} is no number as f32")
-            return number
+            return _float_of(raw)
         case ValueType.BCD:
             digits = raw_text(raw, bits)
             if not digits.isdecimal():
@@ -97,7 +105,14 @@ def decode(raw: int, kind: ValueType, bits: int) -> Value:
         case ValueType.HEX:
             return raw_text(raw, bits)
         case _:
-            return raw
+            return characters(raw, bits, TEXTS[kind]) if kind in TEXTS else raw
+
+
+def _float_of(raw: int) -> float:
+    number: float = struct.unpack(">f", raw.to_bytes(4, "big"))[0]
+    if not math.isfinite(number):
+        raise DataError(f"{raw:08X} is no number as f32")
+    return number
 
 
 def raw_text(raw: int, bits: int) -> str:
@@ -116,7 +131,10 @@ def encode(text: str, kind: ValueType | None, bits: int) -> int:
     Raises:
         UsageError: it is no such value, or does not fit.
     """
-    text = text.strip()
+    return text_bits(text, bits, TEXTS[kind]) if kind in TEXTS else _encode(text.strip(), kind, bits)
+
+
+def _encode(text: str, kind: ValueType | None, bits: int) -> int:
     if bits == 1:
         if text.lower() not in _ON:
             raise UsageError(f"value {text!r}: expected on or off, true or false, 1 or 0")

@@ -14,7 +14,7 @@ from fatektool.protocol.elements import KINDS
 from fatektool.protocol.values import NUMBERS, Value, ValueType, decode, default_type, encode
 from tests.rows import each
 
-BOOL, U16, I16, U32, I32, F32, BCD, HEX = ValueType
+BOOL, U16, I16, U32, I32, F32, BCD, HEX, STR, STR_HIGH = ValueType
 WHOLE = "expected a whole number such as 4261, -1 or 0x10A5"
 
 
@@ -23,9 +23,21 @@ def float_bits(number: float) -> int:
 
 
 def test_the_types() -> None:
-    assert [kind.value for kind in ValueType] == ["bool", "u16", "i16", "u32", "i32", "f32", "bcd", "hex"]
+    assert [kind.value for kind in ValueType] == [
+        "bool",
+        "u16",
+        "i16",
+        "u32",
+        "i32",
+        "f32",
+        "bcd",
+        "hex",
+        "str",
+        "strh",
+    ]
     assert {kind: kind.bits for kind in ValueType} == {
         BOOL: 1, U16: 16, I16: 16, U32: 32, I32: 32, F32: 32, BCD: None, HEX: None,
+        STR: None, STR_HIGH: None,
     }  # fmt: skip
     assert {U16, I16, U32, I32, F32, BCD} == NUMBERS
 

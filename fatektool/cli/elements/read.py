@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING
 
 import click
@@ -16,15 +17,18 @@ from fatektool.jobs.elements.items import comments_of, read_items
 from fatektool.jobs.elements.selection import parse_items
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
     from pathlib import Path
 
     from fatektool.cli.shared.connection import Connection
     from fatektool.cli.shared.output import Voice
+    from fatektool.jobs.elements.items import ItemValues
 
 
 @click.command(
     "read", epilog="Example: fatektool read R12:3 WM8 DR2 Y0-Y7 X16 D4:f32 -p /dev/ttyUSB0", help=(
-        f"Read elements of any kind.\n\n{SELECTION}"
+        "Read elements of any kind. On a terminal neighbours are shown together: R0-R99 as a grid, X0-X31 as "
+        f"bits.\n\n{SELECTION}"
     ),
 )  # fmt: skip
 @click.argument("elements", nargs=-1, required=True)
@@ -45,6 +49,17 @@ def read_command(
     with connection.open(voice) as plc:
         found = read_items(plc, items)
         document = read_document(plc, found, texts)
-    voice.show(document, value_lines(found.values, texts))
+    voice.show(document, _lines(found, texts))
     warn_of(found.errors, voice, found.not_asked)
     return PlcError.exit_code if found.errors else 0
+
+
+def _lines(found: ItemValues, texts: Mapping[str, str]) -> Iterator[str]:
+    """Neighbours together on a terminal, else a value on each line."""
+    if not sys.stdout.isatty():
+        return value_lines(found.values, texts)
+    from shutil import get_terminal_size
+
+    from fatektool.cli.elements.grid import terminal_lines
+
+    return terminal_lines(found, texts, get_terminal_size().columns)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import groupby
 from typing import TYPE_CHECKING, Final
 
-from fatektool.cli.shared.output import Voice, table
+from fatektool.cli.shared.output import Voice, table, visible
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -13,8 +13,9 @@ if TYPE_CHECKING:
     from fatektool.protocol.values import Value
 
 SELECTION: Final = (
-    "ELEMENTS: R12, a range R0-R99, a count R0:100; optionally with a type: R12:i16, D4:f32, R0:8:bcd. "
-    "Types: bool, u16, i16, u32, i32, f32, bcd, hex."
+    "ELEMENTS: R12, a range R0-R99, a count R0:100; optionally with a type: R12:u16, D4:f32, R0:8:bcd. "
+    "Types: bool, i16, i32 (the default), u16, u32, f32, bcd, hex, str (text, the first character in the low "
+    "byte), strh (in the high byte)."
 )
 """For the help of each command that takes elements."""
 
@@ -27,6 +28,8 @@ def shown(value: Value | None, absent: str = "-") -> str:
         return absent
     if isinstance(value, bool):
         return "on" if value else "off"
+    if isinstance(value, str):
+        return visible(value).replace("\n", "\\n")
     return f"{value:.7g}" if isinstance(value, float) else f"{value}"
 
 

@@ -1,6 +1,7 @@
 """The values that a user assigns: ``R12=4261``, ``Y0=on``, ``D4:f32=1.5``, ``R0:3=1,2,3``, ``R0-R9=0``.
 
-The left side is a selection. The right side is one value for all its elements, or one for each, with commas.
+The left side is a selection. The right side is one value for all its elements, or one for each, with commas;
+or a text, ``R0-R9:str=PRESS 4``, of which each register gets two characters and the rest 0.
 """
 
 from __future__ import annotations
@@ -10,7 +11,8 @@ from typing import TYPE_CHECKING
 from fatektool.errors import LineError, PlcBusy, UsageError
 from fatektool.jobs.elements.selection import overlapping, parse_item
 from fatektool.jobs.elements.writes import write_elements
-from fatektool.protocol.values import Value, ValueType, encode
+from fatektool.protocol.texts import divided
+from fatektool.protocol.values import TEXTS, Value, ValueType, encode
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -38,7 +40,8 @@ def parse_assignment(text: str) -> list[tuple[Item, int]]:
     left, sign, right = text.partition("=")
     if not sign or not right.strip():
         raise UsageError(f"{text!r}: expected ELEMENT=VALUE, such as R12=4261, Y0=on or D4:f32=1.5")
-    return _assigned(left, right.split(","), repr(text))
+    values = [right] if _type(left) in TEXTS else right.split(",")
+    return _assigned(left, values, repr(text))
 
 
 def assigned(values: Mapping[str, Value | Sequence[Value]]) -> list[tuple[Item, int]]:
@@ -58,13 +61,14 @@ def assigned(values: Mapping[str, Value | Sequence[Value]]) -> list[tuple[Item, 
 
 def _text(left: str, value: Value) -> str:
     """A value of a program as a user would write it."""
-    if (
-        isinstance(value, int)
-        and not isinstance(value, bool)
-        and left.rpartition(":")[2].strip().lower() == ValueType.HEX.value
-    ):
-        return f"{value:X}"
-    return str(value)
+    in_hex = _type(left) is ValueType.HEX
+    return f"{value:X}" if in_hex and isinstance(value, int) else str(value)
+
+
+def _type(left: str) -> ValueType | None:
+    """The type that a selection names; None if it names none."""
+    word = left.rpartition(":")[2].strip().lower()
+    return ValueType(word) if word in {kind.value for kind in ValueType} else None
 
 
 def _apart(pairs: Iterable[tuple[Item, int]]) -> list[tuple[Item, int]]:
@@ -78,18 +82,20 @@ def _apart(pairs: Iterable[tuple[Item, int]]) -> list[tuple[Item, int]]:
 
 def _assigned(left: str, values: list[str], name: str) -> list[tuple[Item, int]]:
     items = parse_item(left)
-    if len(values) == 1:
+    kind = _type(left)
+    if len(values) == 1 and kind in TEXTS:
+        values = divided(values[0], [item.element.kind.bits for item in items])
+    elif len(values) == 1:
         values = values * len(items)
     if len(values) != len(items):
         expected = "1 value" if len(items) == 1 else f"1 value or {len(items)}"
         raise UsageError(f"{name}: expected {expected}, got {len(values)}")
-    typed = left.rpartition(":")[2].strip().lower() in {kind.value for kind in ValueType}
-    return [(item, _encoded(item, value, typed=typed)) for item, value in zip(items, values, strict=True)]
+    return [(item, _encoded(item, value, kind)) for item, value in zip(items, values, strict=True)]
 
 
-def _encoded(item: Item, value: str, *, typed: bool) -> int:
+def _encoded(item: Item, value: str, kind: ValueType | None) -> int:
     try:
-        return encode(value, item.type if typed else None, item.element.kind.bits)
+        return encode(value, kind, item.element.kind.bits)
     except UsageError as error:
         raise UsageError(f"{item.key}: {error.message}", element=item.key) from error
 
