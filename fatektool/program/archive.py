@@ -1,4 +1,4 @@
-"""The backup file, ``fatektool.backup/1``: JSON with one page a line, so that ``git diff`` shows pages.
+"""The backup file, ``fatektool.backup/1``: JSON with one page on each line, so that ``git diff`` shows pages.
 
 Keys in this order::
 
@@ -8,10 +8,9 @@ Keys in this order::
     ladder_words page_count passes proof{known_from pages_known pages_read_twice}
     sha256 pages[256 hex digits, …]
 
-A file from before there was ``proof`` has none. One from before there were families has ``valid``,
-``signature`` and ``ladder_words`` alone in ``header``.
-``sha256`` is of all pages' bytes in order. Whatever reads a backup gets it checked to the last byte: a file
-that does not hold is refused, naming what and where, before anything is done with it.
+Older files have no ``proof``, or only ``valid``, ``signature`` and ``ladder_words`` in ``header``.
+``sha256`` is of all pages' bytes in order. A backup file is always checked completely: an invalid file is
+refused, with what is wrong and where, before anything is done with it.
 """
 
 from __future__ import annotations
@@ -33,6 +32,7 @@ from fatektool.program.plc_record import fault_of
 
 SCHEMA: Final = "fatektool.backup/1"
 LARGEST_FILE: Final = 4 << 20  # the largest image takes 270 kB
+_RIGHT_FILE: Final = "check that it is the right file"
 _PAGE: Final = re.compile(r"[0-9A-Fa-f]{256}", re.ASCII)
 _PROJECT: Final = b"Fatek WinProladder"
 _TIME: Final = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?Z", re.ASCII)
@@ -40,13 +40,13 @@ _TIME: Final = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?Z", re.ASCII)
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Where a program was read.
+    """The PLC that a program was read from.
 
     Attributes:
-        target: as the user named it.
+        target: as the user wrote it.
         station: 1 to 254.
         protocol: ``facon``.
-        line: port parameters, ``9600 7E1``; None where there are none.
+        line: port parameters, ``9600 7E1``; None if it has none.
     """
 
     target: str
@@ -57,12 +57,12 @@ class Source:
 
 @dataclass(frozen=True, slots=True)
 class Proof:
-    """How the pages of a program were proven.
+    """How the pages of a program were verified.
 
     Attributes:
         known_from: the file or revision whose pages they were compared with; None if there was none.
-        pages_known: how many were read once, and are those on file.
-        pages_read_twice: how many were read until two readings in a row agreed.
+        pages_known: pages that were read once and are the same as in that file.
+        pages_read_twice: pages that were read until two readings in a row were identical.
     """
 
     known_from: str | None
@@ -70,7 +70,7 @@ class Proof:
     pages_read_twice: int
 
     def document(self) -> dict[str, Any]:
-        """As a backup file has it."""
+        """For a backup file."""
         return {
             "known_from": self.known_from,
             "pages_known": self.pages_known,
@@ -78,10 +78,10 @@ class Proof:
         }
 
     def text(self, passes: int) -> str:
-        """In words.
+        """As text.
 
         Args:
-            passes: how often the program was read whole.
+            passes: how many times the whole program was read.
         """
         if not self.pages_known:
             times = "twice" if passes <= 2 else f"{passes} times"
@@ -92,16 +92,16 @@ class Proof:
 
 @dataclass(frozen=True, slots=True)
 class Backup:
-    """A program with where and when it was read.
+    """A program, with source and time.
 
     Attributes:
         program: the image.
         created: UTC, RFC 3339.
         tool: name and version of the program that wrote it.
-        source: where it was read.
+        source: the PLC that it was read from.
         plc: the status document's ``status`` and ``system``.
-        passes: how often the program was read whole.
-        proof: how its pages were proven; None in a file from before this was kept.
+        passes: how many times the whole program was read.
+        proof: how its pages were verified; None in older files.
     """
 
     program: Program
@@ -114,13 +114,13 @@ class Backup:
 
     @property
     def proof_words(self) -> str:
-        """How the pages were proven, in words."""
+        """How the pages were verified, as text."""
         twice = len(self.program.pages) if self.passes > 1 else 0
         return (self.proof or Proof(None, 0, twice)).text(self.passes)
 
     @property
     def header_document(self) -> dict[str, Any]:
-        """The header as the file has it."""
+        """The header for the file."""
         return self.program.header.document()
 
     def to_bytes(self) -> bytes:
@@ -150,14 +150,14 @@ class Backup:
 
     @classmethod
     def parse(cls, data: bytes, name: str = "backup") -> Backup:
-        """Read and check a backup file's bytes.
+        """Parse and check the bytes of a backup file.
 
         Args:
             data: the bytes.
             name: the file's name, for messages.
 
         Raises:
-            DataError: anything does not hold.
+            DataError: anything is invalid.
         """
         try:
             return _Reader(name).backup(_json(data, name))
@@ -167,11 +167,11 @@ class Backup:
 
 
 def save_backup(backup: Backup, path: Path | str, *, overwrite: bool = False) -> None:
-    """Write a backup file, whole or not at all.
+    """Write a backup file, completely or not at all.
 
     Raises:
-        UsageError: it exists and ``overwrite`` is False, or the place cannot be written.
-        DataError: the disk is full or broken.
+        UsageError: it exists and ``overwrite`` is False, or the folder cannot be written.
+        DataError: the disk is full or damaged.
     """
     write_whole(Path(path), backup.to_bytes(), overwrite=overwrite)
 
@@ -181,7 +181,7 @@ def load_backup(path: Path | str) -> Backup:
 
     Raises:
         UsageError: there is no such file.
-        DataError: it is damaged or none of ours.
+        DataError: it is damaged, or not a backup file.
     """
     return Backup.parse(read_bounded(Path(path), LARGEST_FILE), str(path))
 
@@ -190,23 +190,25 @@ def _json(data: bytes, name: str) -> dict[str, Any]:
     if data.startswith(_PROJECT):
         raise DataError(
             f"{name}: a WinProladder project, expected a backup of a PLC",
-            hint="inspect, listing, xref, diff and verify take a project, too",
+            hint="inspect, listing, xref, diff and verify also read projects",
         )
     try:
         document = read_json(data)
     except ValueError as error:  # UnicodeDecodeError and JSONDecodeError among them
-        raise DataError(f"{name}: not a backup file: {error}", hint="is it the right file?") from error
+        raise DataError(
+            f"{name}: not a backup file: {error}", hint="check that it is the right file"
+        ) from error
     if not isinstance(document, dict) or document.get("schema") != SCHEMA:
         got = document.get("schema") if isinstance(document, dict) else type(document).__name__
         raise DataError(
             f"{name}: not a backup file of this version: expected schema {SCHEMA!r}, got {_short(got)}",
-            hint="is it the right file?",
+            hint=_RIGHT_FILE,
         )
     return document
 
 
 class _Reader:
-    """Takes a document apart, and says what does not hold."""
+    """Parses a document; raises the first fault."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -298,7 +300,7 @@ class _Reader:
     def fault(self, what: str, got: object) -> DataError:
         return DataError(
             f"{self.name}: {what}, got {_short(got)}",
-            hint="the file is damaged or was edited: take another backup",
+            hint="the file is damaged or was edited: use another backup",
         )
 
 

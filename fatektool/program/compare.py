@@ -1,4 +1,4 @@
-"""Two programs' differences, by page and word."""
+"""The differences between two programs, by page and word."""
 
 from __future__ import annotations
 
@@ -52,19 +52,19 @@ class PageDifference:
 
     @property
     def word_count(self) -> int:
-        """How many they are, found without naming each: a restore counts before it asks, and a line waits."""
+        """Their number. It is faster than ``words``, because a restore needs it while the line waits."""
         return 0 if self.a is None or self.b is None else sum(map(ne, _words(self.a), _words(self.b)))
 
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """Two programs side by side.
+    """The comparison of two programs.
 
     Attributes:
         a_ladder_words: ladder size of the first.
         b_ladder_words: ladder size of the second.
         pages: the pages that differ, in order.
-        b_has_more: True if the second has pages past the first's last, which are not compared.
+        b_has_more: True if the second has more pages than the first; they are not compared.
     """
 
     a_ladder_words: int
@@ -74,7 +74,7 @@ class Comparison:
 
     @property
     def same(self) -> bool:
-        """True if all that is compared is the same to the byte."""
+        """True if all compared bytes are identical."""
         return not self.pages and self.a_ladder_words == self.b_ladder_words
 
     @property
@@ -84,7 +84,7 @@ class Comparison:
 
     @property
     def word_count(self) -> int:
-        """How many words differ, in the pages that both have."""
+        """The number of words that differ, in the pages that both have."""
         return sum(page.word_count for page in self.pages)
 
 
@@ -96,7 +96,7 @@ def compare(a: Program, b: Program) -> Comparison:
 def compare_images(
     a: Program, b_ladder_words: int, b_pages: Sequence[bytes], *, b_has_more: bool = False
 ) -> Comparison:
-    """Compare a program with the pages of another, which need not be all of it.
+    """Compare a program with pages of another, not necessarily all.
 
     Args:
         a: the first.

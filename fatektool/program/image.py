@@ -3,12 +3,11 @@
 ::
 
     facon    page 0 the header, 1..N the ladder; N = ladder size / 64 rounded up
-    fbs      pages 0..3 the header, the code from page 4 on, labels and more behind it
+    fbs      pages 0..3 the header, the code from page 4 on, then labels and more
 
-The ladder size that the PLC says it has (53) asks for N + 1 pages. A PLC that refuses the pages past its end
-gave its whole program with less: all that the header announces, or all but the very last. An image is what
-the PLC holds, no more: not a project file of the vendor's program, no comments that the PLC does not keep, no
-register values.
+For the ladder size that the PLC reports (53), there are N + 1 pages. If a PLC refuses the pages after its
+end, fewer pages are a complete program: all that the header announces, or one less. An image has only what
+the PLC has: it is not a project file of the vendor's software, and has no comments and no register values.
 """
 
 from __future__ import annotations
@@ -30,23 +29,23 @@ LAST_LADDER_WORDS: Final = 0xFFFF
 
 
 def page_count(ladder_words: int) -> int:
-    """How many pages a ladder size asks for, the header included: 8192 words are 129."""
+    """The number of pages for a ladder size, the header included: 129 for 8192 words."""
     return 1 + -(-ladder_words // PAGE_WORDS)
 
 
 def is_whole(pages: Sequence[bytes], ladder_words: int) -> bool:
-    """True if these pages are a whole program where the PLC refuses all that follow."""
+    """True if these pages are a complete program, if the PLC refuses all further pages."""
     most = page_count(ladder_words)
     return len(pages) == most or fewest_pages(pages, ladder_words, most) <= len(pages) < most
 
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """A whole program image.
+    """A complete program image.
 
     Attributes:
         ladder_words: the ladder size that the PLC reports (53), 1 to 65535.
-        pages: 128 bytes each, page 0 first; as many as the ladder size asks for, or as ``is_whole`` allows.
+        pages: 128 bytes each, page 0 first; as many as the ladder size needs, or as ``is_whole`` allows.
 
     Raises:
         DataError: a wrong number or length of pages, or no ladder.
@@ -69,17 +68,17 @@ class Program:
 
     @property
     def header(self) -> Header:
-        """What the first pages say."""
+        """The header in the first pages."""
         return read_header(self.pages, self.ladder_words)
 
     @property
     def header_faults(self) -> tuple[str, ...]:
-        """What does not hold of the header; empty for a header that holds."""
+        """The faults of the header; empty for a valid header."""
         return self.header.faults
 
     @property
     def pages_asked_for(self) -> int:
-        """How many pages the ladder size asks for; more than there are if the PLC refused some."""
+        """The number of pages for the ladder size; more than ``pages`` has if the PLC refused some."""
         return page_count(self.ladder_words)
 
     @property
@@ -89,22 +88,22 @@ class Program:
 
     @property
     def sha256(self) -> str:
-        """The hash by which two people can see whether they hold the same program."""
+        """The hash of the program: two people can compare it."""
         return hashlib.sha256(self.data).hexdigest()
 
     def require_header(self, hint: str | None = None) -> None:
-        """Raise unless the header holds.
+        """Raise unless the header is valid.
 
         Args:
             hint: the next step.
 
         Raises:
-            DataError: it does not; says what.
+            DataError: it is invalid; with the faults.
         """
         faults = self.header_faults
         if faults:
             raise DataError(
-                f"the program's header (page 0) does not hold: {'; '.join(faults)}",
+                f"invalid header of the program (page 0): {'; '.join(faults)}",
                 hint=hint,
                 page=0,
                 faults=list(faults),
@@ -112,7 +111,7 @@ class Program:
 
 
 def ranges(numbers: Iterable[int]) -> str:
-    """Numbers in words for a message: ``0-4, 7, 9-12``."""
+    """Numbers as text for a message: ``0-4, 7, 9-12``."""
     parts: list[list[int]] = []
     for number in sorted(numbers):
         if parts and parts[-1][1] == number - 1:

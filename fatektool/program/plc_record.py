@@ -1,4 +1,4 @@
-"""What a backup keeps of its PLC: the status document's ``status`` and ``system``, and the check of them.
+"""The record of the PLC in a backup: ``status`` and ``system`` as in the status document, and their check.
 
 ::
 
@@ -66,7 +66,7 @@ SHAPE: Final[dict[str, Any]] = {
 
 
 def model_words(system: Mapping[str, Any]) -> str:
-    """What ``system`` says of the model: ``MC, 28 points, OS 3.1``."""
+    """The model in ``system``: ``MC, 28 points, OS 3.1``."""
     unit, points = system["unit_type"], system["main_unit_points"]
     name = unit["name"] or f"type {unit['code']:02X}"
     count = f"{points['points']} points" if points["points"] else f"points code {points['code']:02X}"
@@ -74,7 +74,7 @@ def model_words(system: Mapping[str, Any]) -> str:
 
 
 def fault_of(value: object, shape: Any = SHAPE, where: str = "plc") -> tuple[str, object] | None:
-    """The first thing that does not hold: where, what was expected, and what is there. None if all does."""
+    """The first fault: where, what was expected, and the value; None if all is valid."""
     if isinstance(shape, _Value):
         return None if shape.holds(value) else (f"{where}: expected {shape.words}", value)
     if not isinstance(value, dict) or value.keys() != shape.keys():

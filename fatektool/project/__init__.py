@@ -1,1 +1,1 @@
-"""Project files of the vendor's program, WinProladder (``.pdw``): bytes -> values. Reading only, no I/O."""
+"""Project files of the vendor's software, WinProladder (``.pdw``): bytes -> values. Reading only, no I/O."""

@@ -1,14 +1,14 @@
-"""A project's memories are enciphered; the key comes out of the file itself.
+"""Decryption of a project's memories, with a key found from the file itself.
 
-Byte i is XORed with K[i mod 256] and k[i mod 5]; K and k differ from file to file. Erased memory is FF, so at
-each place the most frequent byte is the key XOR FF wherever FF is the most frequent byte of the memory. Where
-much of it is in use, the words that every image has in its first four pages decide, FFFF in most of them::
+Byte i is XORed with K[i mod 256] and k[i mod 5]; K and k differ from file to file. Erased memory is FF. So if
+FF is the most frequent byte of the memory, the most frequent byte at each place is the key XOR FF. If much of
+the memory is used, the words that every image has in its first four pages decide, FFFF in most of them::
 
-    1  each residue of i modulo 1280 (the period of both) votes with its bytes, known words with more weight
-    2  the same K[j] meets each of the five k: what their guesses differ by, voted by 1280 pairs, is k
-    3  with k taken out, all bytes at the same place modulo 256 vote for K
+    1  for each residue of i modulo 1280 (the period of both), the bytes are counted, known words with more
+    weight 2  the same K[j] occurs with each of the five k: the most frequent difference in 1280 pairs is k 3
+    with k removed, all bytes at the same place modulo 256 are counted for K
 
-Only K XOR k matters, so k[0] is 0 here. Whether the key is right is for the caller to prove, by the sums.
+Only K XOR k matters, so k[0] is 0 here. The caller checks the key by the sums.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ def solve(memories: Sequence[bytes], known: Mapping[int, tuple[int, int]]) -> by
     """Find the key: a period of 1280 bytes.
 
     Args:
-        memories: enciphered, each from the key's start; the first is the one with known bytes.
-        known: place in the first memory -> the byte that is there, and how many votes that is worth.
+        memories: encrypted, each from the start of the key; the first one has the known bytes.
+        known: place in the first memory -> the known byte, and its weight.
     """
     votes = [_votes(memories, residue) for residue in range(PERIOD)]
     for place, (byte, weight) in known.items():
@@ -51,7 +51,7 @@ def solve(memories: Sequence[bytes], known: Mapping[int, tuple[int, int]]) -> by
 
 
 def decipher(data: bytes, key: bytes) -> bytes:
-    """Take the key out; put it in, which is the same."""
+    """Decrypt, or encrypt, which is the same."""
     whole = (key * (len(data) // len(key) + 1))[: len(data)]
     return (int.from_bytes(data, "big") ^ int.from_bytes(whole, "big")).to_bytes(len(data), "big")
 
@@ -64,7 +64,7 @@ def _votes(memories: Sequence[bytes], residue: int) -> Counter[int]:
 
 
 def _short_key(votes: Sequence[Counter[int]]) -> list[int]:
-    """The five k, from what the guesses for the same K[j] differ by."""
+    """The five k, from the differences for the same K[j]."""
     steps: list[Counter[int]] = [Counter() for _ in range(_SHORT)]
     sure = [max(each.values(), default=0) for each in votes]
     for residue in range(PERIOD):
@@ -78,5 +78,5 @@ def _short_key(votes: Sequence[Counter[int]]) -> list[int]:
 
 
 def _most(votes: Counter[int]) -> int:
-    """The value with the most votes, of two the smaller, so that the same file always gives the same key."""
+    """The most frequent value; of two the smaller, so that a file always has the same key."""
     return min(votes, key=lambda value: (-votes[value], value), default=_ERASED)

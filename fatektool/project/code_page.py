@@ -1,7 +1,8 @@
-"""Which code page a project's comments were written in.
+"""The code page of a project's comments.
 
-A file does not say. It is the page in which all comments decode; where that is several, the one in which they
-look most like words: accented letters beside letters, ideographs of the common half beside their like.
+The file does not contain it. It is the page in which all comments can be decoded; if several are possible,
+the one in which they look most like words: accented letters next to letters, common ideographs next to each
+other.
 """
 
 from __future__ import annotations
@@ -20,9 +21,9 @@ SINGLE: Final = {
     "cp1250": "áâăäąćçčďđéęëěíîĺľłńňóôőöŕřśšşťţúůűüýźżžßÁÂĂÄĄĆÇČĎĐÉĘËĚÍÎĹĽŁŃŇÓÔŐÖŔŘŚŠŞŤŢÚŮŰÜÝŹŻŽ",
     "cp1254": "çğıİöşüâîûÇĞÖŞÜ",
 }
-"""Code pages of one byte a character, and the letters of the languages they are for."""
+"""Code pages with one byte for each character, and the letters of their languages."""
 DOUBLE: Final = {"cp932": (0x88, 0x97), "cp936": (0xB0, 0xD7), "cp950": (0xA4, 0xC6)}
-"""Code pages of two bytes, and the first bytes of the ideographs in common use."""
+"""Code pages with two bytes, and the first bytes of common ideographs."""
 CODE_PAGES: Final = ("cp1250", "cp1252", "cp932", "cp936", "cp950", "cp1254")
 LAST_RESORT: Final = "latin-1"
 _SIGNS: Final = "°²³µ±×÷§·–—…‘’“”€"  # noqa: RUF001  # what is meant
@@ -36,22 +37,22 @@ _BEFORE: Final = {
     "œ": "u",
     "û": "t",
 }
-"""Letters of cp1252 that have a letter of Central Europe in their place in cp1250, and what follows them in
-the languages of the former: the end of a word (a space), a consonant, a vowel."""
+"""Letters of cp1252 whose code is a Central European letter in cp1250, and what follows them in the languages
+of cp1252: the end of a word (a space), a consonant, a vowel."""
 _TURKISH: Final = "ğıİşŞĞ"
 _ASCII: Final = 0x80
 _FULL: Final = (15, 16)
-"""An element's comment has at most 16 bytes: one of so many may have been cut."""
+"""An element's comment has at most 16 bytes: one with 16 may have been cut."""
 _LOOKED_AT: Final = 1000
 _LONGEST: Final = 200
-"""How many texts, and how much of each, are enough to decide by; all must decode."""
+"""The number of texts, and of bytes of each, for the decision; all texts must decode."""
 
 
 class Choice(NamedTuple):
-    """A code page, and whether it is more than the last resort.
+    """A code page, and whether it is certain.
 
     Attributes:
-        name: as Python calls it.
+        name: as in Python.
         sure: False if no code page decodes all comments.
     """
 
@@ -60,13 +61,13 @@ class Choice(NamedTuple):
 
 
 def code_page(name: str) -> str:
-    """Check a code page that a user names.
+    """Check a code page that the user gave.
 
     Raises:
-        UsageError: it is none of the known ones.
+        UsageError: it is unknown.
     """
     if name not in {*CODE_PAGES, LAST_RESORT}:
-        raise UsageError(f"no code page {name!r}: expected {', '.join(CODE_PAGES)} or {LAST_RESORT}")
+        raise UsageError(f"unknown code page {name!r}: expected {', '.join(CODE_PAGES)} or {LAST_RESORT}")
     return name
 
 
@@ -84,7 +85,7 @@ def choose(texts: Sequence[bytes]) -> Choice:
 
 
 def decoded(text: bytes, name: str) -> str:
-    """A text in a code page; half a character at the end of one that fills its place is left out.
+    """A text in a code page, without half a character at the end of a text with the maximum length.
 
     Raises:
         UnicodeDecodeError: it does not decode.
@@ -101,7 +102,7 @@ def _all(texts: Iterable[bytes], name: str) -> list[str] | None:
 
 
 def _likeness(text: str, name: str) -> int:
-    """How much a text looks like words in a language of this code page."""
+    """A score: how much a text looks like words in a language of this code page."""
     score = 0
     for place, letter in enumerate(text):
         if ord(letter) >= _ASCII:

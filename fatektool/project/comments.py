@@ -1,9 +1,9 @@
-"""What an engineer wrote into a project: comments of elements and networks, names of units.
+"""The texts in a project: comments of elements and networks, names of units.
 
 ::
 
     1006   u16 0 · u16 length · u16 length · u16 0 · project's name · model
-    1001   u16 where the unit begins, in bytes · u16 length · u16 0 · name
+    1001   u16 byte address of the unit · u16 length · u16 0 · name
     1002   u16 byte address of the network · u16 length · text
     1003   u16 length · element · u16 length, at most 16 · text · u16 0
 """
@@ -33,13 +33,13 @@ class Comments:
     """The texts of a project.
 
     Attributes:
-        name: the project's.
-        model: the PLC's, as record 1006 has it.
+        name: of the project.
+        model: of the PLC, in record 1006.
         units: byte address in the image -> the program unit's name.
         networks: byte address in the image -> the network's comment.
         elements: ``S3`` -> its comment.
-        code_page: in which they were read.
-        sure: False if no code page decodes all of them, and latin-1 was taken.
+        code_page: of the texts.
+        sure: False if no code page decodes all of them, and latin-1 is used.
     """
 
     name: str
@@ -83,11 +83,11 @@ class _Raw:
 
 
 def comments_of(records: Sequence[Record], encoding: str | None = None) -> Comments:
-    """Read a project's texts.
+    """The texts of a project.
 
     Args:
-        records: the project's.
-        encoding: the code page they were written in; None finds it out.
+        records: of the project.
+        encoding: the code page they were written in; None to detect it.
     """
     raw = _Raw(records)
     page = Choice(encoding, sure=True) if encoding is not None else choose(raw.texts)
@@ -95,7 +95,7 @@ def comments_of(records: Sequence[Record], encoding: str | None = None) -> Comme
     def plain(text: bytes) -> str:
         try:
             found = decoded(text, page.name)
-        except UnicodeDecodeError:  # in a code page that was named
+        except UnicodeDecodeError:  # in a code page that the user gave
             found = text.decode(page.name, "replace")
         return "".join(letter if letter.isprintable() else " " for letter in found).strip()
 
@@ -111,7 +111,7 @@ def comments_of(records: Sequence[Record], encoding: str | None = None) -> Comme
 
 
 def text_in(addresses: range, texts: Mapping[int, str]) -> str | None:
-    """The text of a network or a unit that begins among these byte addresses; None if there is none."""
+    """The text of a network or unit that begins in this range of byte addresses; None if there is none."""
     found = texts.get(addresses.start)
     if found is None:
         found = next((text for address, text in texts.items() if address in addresses), None)
@@ -119,13 +119,13 @@ def text_in(addresses: range, texts: Mapping[int, str]) -> str | None:
 
 
 def comment_of(element: str, comments: Mapping[str, str]) -> str | None:
-    """The comment of an element: its own, or that of the register or timer that it is a part or a pair of.
+    """The comment of an element: its own, or that of the register or timer that it belongs to.
 
     Args:
         element: such as ``DR2``, which has that of R2, or ``RT5``, which has that of T5.
-        comments: a project's.
+        comments: of a project.
     """
-    plain = element if element[1:2].isdigit() else element.removeprefix("D")  # D2 is no pair
+    plain = element if element[1:2].isdigit() else element.removeprefix("D")  # D2 is not a pair
     for name in (element, plain, plain.removeprefix("R") if plain[:2] in {"RT", "RC"} else plain):
         if name in comments:
             return comments[name]
@@ -133,7 +133,7 @@ def comment_of(element: str, comments: Mapping[str, str]) -> str | None:
 
 
 def short_element(text: str) -> str | None:
-    """An element as it is written everywhere here: ``R12`` for ``R00012``; None for what is none."""
+    """An element in the usual form: ``R12`` for ``R00012``; None if it is not one."""
     found = _ELEMENT.fullmatch(text.strip().upper())
     return f"{found[1]}{int(found[2])}" if found else None
 

@@ -1,8 +1,8 @@
-"""Two programs against each other: their pages, and what of their networks differs.
+"""Comparison of two programs: their pages, and their networks.
 
-A project holds the image and no more, in an order of its own: pages past it are not compared, and where the
-other program has the two bytes of each word exchanged, they are put into the same order first. Two backups
-are compared as they are.
+A project has only the image, in its own byte order: pages after the image are not compared, and if the other
+program has the two bytes of each word swapped, they are put into the same order first. Two backups are
+compared as they are.
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ _ERASED: Final = b"\xff" * PAGE_BYTES
 
 @dataclass(frozen=True)
 class ProgramComparison:
-    """Two programs side by side.
+    """The comparison of two programs.
 
     Attributes:
-        a: the first, as it was compared.
-        b: the second, as it was compared; None if it was not read.
-        pages: their pages.
+        a: the first, as compared.
+        b: the second, as compared; None if it was not read.
+        pages: the comparison of the pages.
         networks: the networks that differ; None if one of them has no mnemonics.
-        code: the second's code; None where there is none.
+        code: the code of the second; None if there is none.
     """
 
     a: Program
@@ -48,12 +48,12 @@ class ProgramComparison:
 
     @property
     def same(self) -> bool:
-        """True if all that is compared is the same to the byte."""
+        """True if all compared bytes are identical."""
         return self.pages.same
 
     @property
     def same_code(self) -> bool:
-        """True if both have mnemonics, and the same."""
+        """True if both have mnemonics, and they are identical."""
         return self.networks == ()
 
     @property
@@ -84,7 +84,7 @@ def compare_files(a: ProgramFile, b: ProgramFile) -> ProgramComparison:
 
 
 def compare_with_pages(a: ProgramFile, pages: Sequence[bytes]) -> ProgramComparison:
-    """Compare a project with pages that a PLC gave: as many as its image has, or all that the PLC has."""
+    """Compare a project with pages of a PLC: as many as its image has, or all that the PLC has."""
     other = program_of(pages)
     one = in_order_of(other, program_of(trimmed(a.program.pages[: a.page_count], len(pages))))
     return compared(*_side_by_side(one, other), a.code, code_of(other))
@@ -103,7 +103,7 @@ def compared(
 
 
 def program_of(pages: Sequence[bytes]) -> Program:
-    """Pages as a program of just their size."""
+    """Pages as a program of exactly their size."""
     return Program((len(pages) - 1) * PAGE_WORDS, tuple(pages))
 
 
@@ -116,7 +116,7 @@ def trimmed(pages: Sequence[bytes], count: int) -> Sequence[bytes]:
 
 
 def in_order_of(example: Program, program: Program) -> Program:
-    """A program with its bytes in the order of another, where both headers say theirs."""
+    """A program in the byte order of another, if both headers show it."""
     orders = example.header.byte_order, program.header.byte_order
     if None in orders or orders[0] == orders[1]:
         return program
@@ -124,7 +124,7 @@ def in_order_of(example: Program, program: Program) -> Program:
 
 
 def program_or_none(ladder_words: int, pages: Sequence[bytes]) -> Program | None:
-    """Pages as a program; None if they are none."""
+    """Pages as a program; None if they are not a program."""
     try:
         return Program(ladder_words, tuple(pages))
     except DataError:

@@ -1,4 +1,4 @@
-"""A project file, read: its memories out of their cipher, its texts in their code page."""
+"""A parsed project file: decrypted memories, decoded texts."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Project:
-    """A project of the vendor's program.
+    """A project of the vendor's software.
 
     Attributes:
-        model: of the PLC, as the file's first bytes name it; None if they name none.
-        memory: what it holds of the PLC's memory.
-        comments: what the engineer wrote.
+        model: of the PLC, in the file's first bytes; None if there is none.
+        memory: the memory of the PLC in it.
+        comments: its texts.
         file_sha256: hash of the file's bytes.
     """
 
@@ -35,20 +35,20 @@ class Project:
 
     @cached_property
     def sha256(self) -> str:
-        """Hash of the image, which is the same whatever the key and the comments are."""
+        """Hash of the image; it does not depend on the key and the comments."""
         return hashlib.sha256(self.memory.image).hexdigest()
 
     @classmethod
     def parse(cls, data: bytes, name: str = "project", encoding: str | None = None) -> Project:
-        """Read a project file's bytes.
+        """Parse the bytes of a project file.
 
         Args:
             data: the bytes.
             name: the file's name, for messages.
-            encoding: the code page of its texts; None finds it out.
+            encoding: the code page of its texts; None to detect it.
 
         Raises:
-            DataError: it is no project, it is cut or damaged, or its cipher cannot be solved.
+            DataError: not a project, incomplete or damaged, or it cannot be decrypted.
         """
         try:
             found = list(records(data))

@@ -1,4 +1,4 @@
-"""The memories of a project: the program's image and what follows it, deciphered.
+"""The memories of a project: the program's image and the memory after it, decrypted.
 
 ::
 
@@ -6,8 +6,8 @@
     180B  182B  181B   other memory, 24832 bytes: byte 0 is address A000: labels, R5000 on, comments
     1800               the image of an FBE, 32768 bytes: code at 2800, settings at 6700 (one file seen)
 
-The key is right if the image begins ``FBS4`` and two of its sums hold, as they do in every file that was
-looked at: that of the settings covers a whole period of the longer key, and that of the code all code.
+The key is right if the image begins with ``FBS4`` and two of its sums are correct, as in all known files:
+that of the settings covers a whole period of the longer key, and that of the code all code.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Family:
-    """How the models of one kind keep their program in a project.
+    """The format of the program in projects of one kind of models.
 
     Attributes:
         image: the type of the image's record.
         other: the type of the other memory's record; None if there is none.
-        start: what the image begins with; empty where that is not known.
+        start: the beginning of the image; empty if not known.
     """
 
     image: int
@@ -55,20 +55,20 @@ _SURE: Final = 100
 _LIKELY: Final = 40
 _WEAK: Final = 10
 _TRUST: Final = (1, 10, 100)
-"""How much the known words count: as the rest does, then, for a memory that is full, against all of it."""
+"""The weight of the known words: first like the rest; then, for a full memory, more than all of it."""
 _SIGNATURE_BYTES: Final = 8
 _MARK_FBE: Final = 0x67FC
-_DAMAGED: Final = "the file is damaged: take it again from where it came from"
+_DAMAGED: Final = "the file is damaged: get it again from its source"
 
 
 @dataclass(frozen=True, slots=True)
 class Memory:
-    """What a project holds of the PLC's memory.
+    """The memory of the PLC in a project.
 
     Attributes:
-        family: of which kind it is.
-        image: the program, deciphered.
-        other: the memory from address A000 on, deciphered; None if the project has none.
+        family: the kind of PLC.
+        image: the program, decrypted.
+        other: the memory from address A000 on, decrypted; None if the project has none.
     """
 
     family: Family
@@ -77,10 +77,10 @@ class Memory:
 
 
 def memory_of(records: Sequence[Record]) -> Memory:
-    """Find and decipher a project's memories.
+    """Find and decrypt the memories of a project.
 
     Raises:
-        DataError: there is none or more than one, it has a wrong size, or the cipher cannot be solved.
+        DataError: none or several images, a wrong size, or the key cannot be found.
     """
     family, image = _image(records)
     other = next((record.data for record in records if record.type == family.other), None)
@@ -102,7 +102,7 @@ def _image(records: Sequence[Record]) -> tuple[Family, bytes]:
     if len(found) != 1:
         raise DataError(
             f"expected one program image in the project, got {len(found)}",
-            hint="is it a project of an FBs, B1 or FBE that was saved whole?",
+            hint="check that it is a complete project of an FBs, B1 or FBE",
         )
     family = by_type[found[0].type]
     size = len(found[0].data)
@@ -112,7 +112,7 @@ def _image(records: Sequence[Record]) -> tuple[Family, bytes]:
 
 
 def _known(family: Family, trust: int) -> Mapping[int, tuple[int, int]]:
-    """Bytes of the image that are the same in every file, with how many votes each has."""
+    """Bytes of the image that are the same in every file, each with its weight."""
     if not family.start:
         return {_MARK_FBE: (0x55, trust * _SURE), _MARK_FBE + 1: (0xAA, trust * _SURE)}
     unsure = {*range(200, 208), *range(256, 288), *range(474, 508)}  # sums; sizes; settings
@@ -130,7 +130,7 @@ def _known(family: Family, trust: int) -> Mapping[int, tuple[int, int]]:
 
 
 def _fault(family: Family, image: bytes) -> str | None:
-    """What proves that an image is not what it should be; None if nothing does."""
+    """The fault of an image; None if it is valid."""
     if not family.start:
         marked = image[_MARK_FBE : _MARK_FBE + 2] == b"\x55\xaa"
         return None if marked else f"no 55 AA at byte {_MARK_FBE:04X} of the image"
@@ -151,7 +151,7 @@ def _fault(family: Family, image: bytes) -> str | None:
 
 
 def _unsolved(enciphered: Sequence[bytes], what: str) -> DataError:
-    """Why the memory cannot be read: it is full, or the file is damaged."""
+    """The error if the memory cannot be decrypted: it is full, or the file is damaged."""
     places = range(PERIOD)
     erased = sum(
         max(Counter(memory[place::PERIOD]).values(), default=0) for memory in enciphered for place in places
@@ -159,8 +159,8 @@ def _unsolved(enciphered: Sequence[bytes], what: str) -> DataError:
     share = erased / sum(len(memory) for memory in enciphered)
     if share < 1 / 2:
         return DataError(
-            f"the project's cipher cannot be solved: {what}; the key comes out of erased memory, "
-            "and more than half is in use",
+            f"the project cannot be decrypted: {what}; the key is found from unused memory, "
+            "but more than half of it is used",
             hint="save the project with fewer comments, or remove unused networks in a copy, and try again",
         )
-    return DataError(f"the project's program does not hold: {what}", hint=_DAMAGED)
+    return DataError(f"invalid program in the project: {what}", hint=_DAMAGED)

@@ -1,4 +1,4 @@
-"""A file with a program: a backup, or a project of the vendor's program. Its bytes say which."""
+"""A file with a program: a backup, or a project of the vendor's software, as its bytes show."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ NO_COMMENTS: Final = Comments("", "", {}, {}, {}, "ascii", sure=True)
 
 @dataclass(frozen=True)
 class ProgramFile:
-    """A program that was read from a file.
+    """A program from a file.
 
     Attributes:
-        name: the file, as the user named it.
-        program: the image in pages; of a project with the memory behind it, where that is in the file.
-        backup: the backup that it is; None for a project.
-        project: the project that it is; None for a backup.
+        name: the file, as the user wrote it.
+        program: the image in pages; for a project with the memory after it, if the file has it.
+        backup: the backup; None for a project.
+        project: the project; None for a backup.
     """
 
     name: str
@@ -47,15 +47,15 @@ class ProgramFile:
 
     @classmethod
     def parse(cls, data: bytes, name: str, encoding: str | None = None) -> ProgramFile:
-        """Read a file's bytes.
+        """Parse the bytes of a file.
 
         Args:
             data: the bytes.
             name: the file's name, for messages.
-            encoding: the code page of a project's comments; None finds it out.
+            encoding: the code page of a project's comments; None to detect it.
 
         Raises:
-            DataError: it is neither, or does not hold.
+            DataError: it is neither, or invalid.
         """
         if is_project(data):
             project = Project.parse(data, name, encoding)
@@ -70,30 +70,30 @@ class ProgramFile:
 
     @property
     def header(self) -> Header:
-        """What the image's first pages say."""
+        """The header of the image."""
         return self.program.header
 
     @property
     def header_document(self) -> dict[str, Any]:
-        """The header as JSON has it. Of an FBE's project no header is known, and so no ladder size."""
+        """The header for JSON. For an FBE project no header is known, so there is no ladder size."""
         document = self.header.document()
         return document if self.project is None or document["family"] else {**document, "ladder_words": None}
 
     @property
     def sha256(self) -> str:
-        """Hash of the program: of all pages; of a project the image alone."""
+        """Hash of the program: of all pages; for a project only the image."""
         return self.program.sha256 if self.project is None else self.project.sha256
 
     @property
     def page_count(self) -> int:
-        """How many pages are the program, without what a project holds of the memory behind it."""
+        """The number of pages of the program, without the memory after it in a project."""
         if self.project is None:
             return len(self.program.pages)
         return -(-len(self.project.memory.image) // PAGE_BYTES)
 
     @cached_property
     def code(self) -> Code | None:
-        """The program in instructions; None where its code is not known or the header does not hold."""
+        """The program as instructions; None if its code is not known or the header is invalid."""
         if self.project is not None and not self.project.memory.family.start:
             return fbe_code(self.project.memory.image)
         return code_of(self.program)
@@ -103,13 +103,13 @@ class ProgramFile:
         """The program's networks.
 
         Raises:
-            DataError: it has no mnemonics.
+            DataError: it has no known code.
         """
         return self.require_code().networks
 
     @property
     def comments(self) -> Comments:
-        """What the engineer wrote; empty for a backup, as a PLC keeps no comments that are known."""
+        """The texts of the project; empty for a backup, because a PLC has no known comments."""
         return NO_COMMENTS if self.project is None else self.project.comments
 
     @property
@@ -118,35 +118,35 @@ class ProgramFile:
         return self.comments.elements
 
     def require_code(self) -> Code:
-        """The program in instructions.
+        """The program as instructions.
 
         Raises:
-            DataError: it has none that can be read.
+            DataError: it has no known code.
         """
         if self.code is not None:
             return self.code
         header = self.header
         if header.faults:
-            why = f"its header does not hold: {'; '.join(header.faults)}"
+            why = f"invalid header: {'; '.join(header.faults)}"
         else:
-            why = f"how the code of the family {header.family!r} ({header.signature}) is made is not known"
+            why = f"the code of the family {header.family!r} ({header.signature}) is not known"
         raise DataError(
             f"{self.name}: no mnemonics: {why}",
-            hint="'fatektool diff' and 'verify' compare such a program by its pages",
+            hint="'fatektool diff' and 'verify' compare such programs by pages",
             file=self.name,
         )
 
 
 def load_program(path: Path | str, *, encoding: str | None = None) -> ProgramFile:
-    """Read a program from a file: a backup, or a project of the vendor's program (``.pdw``).
+    """Read a program from a file: a backup, or a project of the vendor's software (``.pdw``).
 
     Args:
-        path: the file; its bytes decide which it is.
-        encoding: the code page of a project's comments (``cp1250``); None finds it out.
+        path: the file; its bytes show which it is.
+        encoding: the code page of a project's comments (``cp1250``); None to detect it.
 
     Raises:
         UsageError: there is no such file.
-        DataError: it is neither, or does not hold.
+        DataError: it is neither, or invalid.
     """
     from pathlib import Path
 

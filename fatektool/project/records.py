@@ -1,15 +1,15 @@
-"""A project file's frame: 256 bytes, then records to the end.
+"""The records of a project file: 256 bytes, then records to the end.
 
 ::
 
     000  Fatek WinProladder, File Format 1        0A0  model
     080  FB-PLC        090  WinProladder
-    100  record: type u16 · length u16 · bytes · two bytes more, but for type 180A
+    100  record: type u16 · length u16 · bytes · two more bytes, except type 180A
      ..  the last: FFFF · 0
 
 Numbers have their low byte first. In the types 1001 to 1004 and 1006 the two bytes are the sum of the
-record's bytes, modulo 65536; in others they hold something else. If no record can begin where the next one
-should, but one can two bytes before or behind, it is that one.
+record's bytes, modulo 65536; in others they have another meaning. If no record can begin at the expected
+place, but one can two bytes before or after, that one is used.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ if TYPE_CHECKING:
 SIGNATURE: Final = b"Fatek WinProladder, File Format 1"
 HEAD_BYTES: Final = 256
 LARGEST_FILE: Final = 8 << 20
-"""No project is near it: the memories take 66 kB, comments as much again."""
+"""Far above any project: the memories have 66 kB, comments about the same."""
 _MODEL: Final = slice(0xA0, 0x100)
 _END: Final = 0xFFFF
 _MOST_RECORDS: Final = 200_000
 _SUMMED: Final = frozenset({0x1001, 0x1002, 0x1003, 0x1006})
-"""Those of them that are read: what nobody reads may be as it is."""
+"""The types that are read; others are not checked."""
 _BARE: Final = 0x180A
 
 
@@ -39,9 +39,9 @@ class Record:
     """One record.
 
     Attributes:
-        type: what it holds.
-        place: where it begins in the file.
-        data: its bytes, without the two behind them.
+        type: of its contents.
+        place: its offset in the file.
+        data: its bytes, without the two after them.
     """
 
     type: int
@@ -50,21 +50,21 @@ class Record:
 
 
 def is_project(data: bytes) -> bool:
-    """True if a file begins as a project of the vendor's program does."""
+    """True if a file has the signature of a project of the vendor's software."""
     return data.startswith(SIGNATURE[:18])
 
 
 def model(data: bytes) -> str | None:
-    """The model that the file's first 256 bytes name; None if they name none."""
+    """The model in the file's first 256 bytes; None if there is none."""
     text = data[_MODEL].partition(b"\0")[0].rstrip(b"\xff ")
     return text.decode("ascii") if text and all(0x20 <= byte < 0x7F for byte in text) else None
 
 
 def records(data: bytes) -> Iterator[Record]:
-    """Take a project file apart.
+    """Parse a project file.
 
     Raises:
-        DataError: it is none, it is cut short, or a sum does not hold.
+        DataError: not a project, incomplete, or a wrong sum.
     """
     if not data.startswith(SIGNATURE):
         got = data[: len(SIGNATURE)].decode("latin-1")
@@ -89,18 +89,18 @@ def records(data: bytes) -> Iterator[Record]:
         if more:
             _check_sum(record, data[place : place + 4], _u16(data, end))
         place = end + more
-    raise DataError(f"more than {_MOST_RECORDS} records: that is no project", hint="is it the right file?")
+    raise DataError(f"not a project: more than {_MOST_RECORDS} records", hint="check the name of the file")
 
 
 def _tail(data: bytes, kind: int, end: int) -> int:
-    """How many bytes follow a record's own: what its type has, unless only the other makes sense."""
+    """The number of bytes after a record: as usual for its type, unless only the other value is possible."""
     usual = 0 if kind == _BARE else 2
     only_the_other = not _is_record(data, end + usual) and _is_record(data, end + 2 - usual)
     return 2 - usual if only_the_other else usual
 
 
 def _is_record(data: bytes, place: int) -> bool:
-    """True if a record can begin here: a type of a known kind, in the file with all its bytes."""
+    """True if a record can begin here: of a known type, with all its bytes in the file."""
     if place + 4 > len(data):
         return False
     kind, length = _u16(data, place), _u16(data, place + 2)
@@ -110,7 +110,7 @@ def _is_record(data: bytes, place: int) -> bool:
 
 
 def _check_sum(record: Record, head: bytes, stored: int) -> None:
-    """Refuse a record whose sum does not hold. Whether its type and length count is taken either way."""
+    """Refuse a record with a wrong sum; the sum may include its type and length or not."""
     if record.type not in _SUMMED:
         return
     computed = sum(record.data) & 0xFFFF
@@ -118,12 +118,12 @@ def _check_sum(record: Record, head: bytes, stored: int) -> None:
         raise DataError(
             f"record {record.type:04X} at byte {record.place}: expected the sum {stored:04X}, "
             f"got {computed:04X}",
-            hint="the file is damaged: take it again from where it came from",
+            hint="the file is damaged: get it again from its source",
         )
 
 
 def _cut(what: str) -> DataError:
-    return DataError(f"the project file is cut short: {what}", hint="take it again from where it came from")
+    return DataError(f"the project file is incomplete: {what}", hint="get it again from its source")
 
 
 def _u16(data: bytes, place: int) -> int:

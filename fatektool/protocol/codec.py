@@ -1,11 +1,10 @@
-"""What a protocol is to the rest of the package: requests to bytes, bytes to frames, frames to answers.
+"""The interface of all protocols: requests to bytes, bytes to frames, frames to answers.
 
-A client holds one ``Codec`` and knows nothing else of the protocol, so that another
-protocol is another file.
+A client uses one ``Codec`` and nothing else of the protocol, so another protocol is another file.
 
-Most answers do not name their request. So a codec says how an answer that came late is told from the one
-that is waited for: by a number that it repeats (``numbers``), or, behind a *fence*, a request whose answer
-nothing that was asked before could have.
+Most answers do not identify their request. So a codec defines how a late answer is distinguished from the
+expected one: by a number that it repeats (``numbers``), or by a *fence*, a request whose answer differs from
+the answers to all requests before it.
 """
 
 from __future__ import annotations
@@ -25,14 +24,14 @@ A = TypeVar("A")
 
 
 class Frame(NamedTuple):
-    """A whole frame with a right checksum, request or answer.
+    """A complete frame with a correct checksum, request or answer.
 
     Attributes:
-        station: 0 to 255; who is asked or who answers.
-        command: the command's code, known or not.
-        data: what is between command and checksum, error character included.
-        raw: the frame as it came over the wire.
-        number: of the request, where answers repeat it; else 0.
+        station: 0 to 255; the PLC that is asked or answers.
+        command: the command's code, also an unknown one.
+        data: the bytes between command and checksum, error character included.
+        raw: the frame as on the wire.
+        number: of the request, if answers repeat it; else 0.
     """
 
     station: int
@@ -43,26 +42,26 @@ class Frame(NamedTuple):
 
 
 class Decoder(Protocol):
-    """Cuts frames out of a stream, whatever its chunks.
+    """Splits a stream into frames, in whatever pieces it is received.
 
-    ``next_frame`` gives a frame, None when more bytes are needed, or raises ``FrameError`` after it
-    has dropped the bad bytes, so that the caller just goes on. It never raises anything else.
+    ``next_frame`` returns a frame, or None if more bytes are needed. It raises ``FrameError`` after it has
+    dropped bad bytes, so the caller just goes on. It never raises anything else.
     """
 
     def feed(self, data: bytes) -> None:
-        """Take bytes from the wire."""
+        """Add received bytes."""
 
     def next_frame(self) -> Frame | None:
-        """Give the next whole frame, or None."""
+        """The next complete frame, or None."""
 
     def expect_no_more(self) -> bool:
-        """The time for what was fed is over; True if ``next_frame`` may find something in it now.
+        """Note that no more bytes are expected; True if ``next_frame`` may find something now.
 
-        A frame that began and has not ended is none then, and another may follow its beginning.
+        An incomplete frame is then not a frame, and another frame may follow its beginning.
         """
 
     def clear(self) -> int:
-        """Forget what was fed and not yet given; return how many bytes that was."""
+        """Drop all bytes that were not returned as frames; return their number."""
 
 
 class Codec(Protocol):
@@ -74,45 +73,45 @@ class Codec(Protocol):
 
     @property
     def commands(self) -> frozenset[Command]:
-        """The commands that its paper has."""
+        """The commands in its paper."""
 
     @property
     def loopback_alphabet(self) -> bytes:
-        """The bytes that a loopback (4E) may carry over any line that this protocol is used on."""
+        """The bytes that a loopback (4E) may contain on any line with this protocol."""
 
     @property
     def data_bits(self) -> int | None:
-        """The fewest data bits of a serial line that carry its frames, 7 or 8; None if it is for networks."""
+        """The data bits that a serial line needs at least, 7 or 8; None if it is for networks."""
 
     @property
     def default_tcp_port(self) -> int | None:
-        """The port of TCP and UDP unless one is named; None if no paper says one."""
+        """The default port of TCP and UDP; None if no paper has one."""
 
     @property
     def stations(self) -> range:
-        """The stations that one PLC can be asked under."""
+        """The valid stations of one PLC."""
 
     @property
     def numbers(self) -> int:
-        """How many requests differ by a number that their answers repeat; 1 if answers bear none."""
+        """The count of different numbers that answers repeat; 1 if answers have no number."""
 
     @property
     def quiet_chars(self) -> float:
-        """How long a serial line must have been silent before a request, in characters."""
+        """The silence on a serial line before a request, in characters."""
 
     @property
     def last_error(self) -> int:
-        """The highest error code that an answer can carry."""
+        """The highest error code in an answer."""
 
     @property
     def probe(self) -> Request[Any]:
-        """What every PLC answers at no cost, and no echo of it could be taken for the answer."""
+        """A short request that every PLC answers, and whose echo differs from the answer."""
 
     def decoder(self) -> Decoder:
         """A new decoder for one stream."""
 
     def code(self, request: Request[Any]) -> int:
-        """The command in the frames of this request and of its answers."""
+        """The command code in the frames of this request and of its answers."""
 
     def encode(self, station: int, request: Request[A], number: int = 0) -> bytes:
         """The request as one frame for this station.
@@ -120,42 +119,42 @@ class Codec(Protocol):
         Args:
             station: 0 for all of them.
             request: what is asked.
-            number: 0 to ``numbers`` less 1; its answer repeats it.
+            number: 0 to ``numbers`` - 1; the answer repeats it.
 
         Raises:
-            UsageError: the request cannot be said in this protocol.
+            UsageError: this protocol has no such request.
         """
 
     def parse_answer(self, request: Request[A], frame: Frame) -> A:
-        """What a frame answers to this request; its station and command are the caller's to check.
+        """The answer to this request in a frame; the caller checks station and command.
 
         Raises:
             PlcRefused: an error code.
-            PlcBusy: it is at work, and is to be asked again.
-            GatewayTimeout: a gateway says that it got no answer.
-            FrameError: no answer to this request, by length or content.
+            PlcBusy: the PLC is busy; ask again.
+            GatewayTimeout: a gateway reports that it got no answer.
+            FrameError: not an answer to this request, by length or content.
         """
 
     def good_answer(self, request: Request[A], asked: bytes, raw: bytes) -> A:
-        """What a good answer says, read without a decoder, for a stream of requests.
+        """The contents of a valid answer, parsed without a decoder, for a stream of requests.
 
-        It checks as much as a decoder and ``parse_answer`` do, with one comparison for all that the request
-        determines: station, command, number, no error.
+        It checks as much as a decoder and ``parse_answer``, with one comparison for everything that the
+        request determines: station, command, number, no error.
 
         Args:
             request: what is asked.
             asked: its frame.
-            raw: as many bytes as ``answer_bytes`` says.
+            raw: ``answer_bytes`` bytes.
 
         Raises:
-            FrameError: these bytes are anything else than the good answer; a decoder finds out what.
+            FrameError: anything else than the valid answer; a decoder finds out what.
         """
 
     def encode_answer(self, station: int, request: Request[A], answer: A, number: int = 0) -> bytes:
-        """The frame in which a PLC gives this answer to a request.
+        """The frame of a PLC with this answer to a request.
 
         Raises:
-            UsageError: no answer of this protocol can say it.
+            UsageError: this protocol has no such answer.
         """
 
     def encode_raw(
@@ -167,74 +166,74 @@ class Codec(Protocol):
         *,
         answer: bool = False,
     ) -> bytes:
-        """A frame with any command and data, whether the protocol has such a command or not.
+        """A frame with any command and data, also a command that the protocol does not have.
 
         Args:
             station: 0 for all of them.
             command: 0 to 255; in Modbus the function.
-            data: what is between command and checksum.
-            number: 0 to ``numbers`` less 1.
-            answer: True for an answer, where its frame differs from a request's.
+            data: the bytes between command and checksum.
+            number: 0 to ``numbers`` - 1.
+            answer: True for an answer, if its frame differs from a request's.
 
         Raises:
-            UsageError: no frame can hold this.
+            UsageError: it does not fit into a frame.
         """
 
     def encode_refusal(self, station: int, command: int, code: int, number: int = 0) -> bytes:
         """The frame in which a PLC refuses this command.
 
         Args:
-            station: who refuses.
+            station: of the PLC that refuses.
             command: 0 to 255; in Modbus the function.
             code: the error code, 1 to ``last_error``.
             number: of the request.
         """
 
     def checksum(self, data: bytes) -> bytes:
-        """The checksum of what it covers, as it is sent.
+        """The checksum of the bytes that it covers, as sent.
 
         Raises:
-            UsageError: frames of this protocol have none.
+            UsageError: frames of this protocol have no checksum.
         """
 
     def error_text(self, code: int) -> str:
-        """What an error code above 0 means, in words."""
+        """The meaning of an error code above 0."""
 
     def request_bytes(self, request: Request[A]) -> int:
-        """Length in bytes of the frame that asks this, whatever its elements' addresses."""
+        """Length of the request's frame in bytes, the same for all addresses of its elements."""
 
     def answer_bytes(self, request: Request[A]) -> int:
-        """Length in bytes of the frame that answers this request; the likely one if it varies."""
+        """Length of the answer's frame in bytes; the usual one if it varies."""
 
     def neighbourhood(self, element: Element, *, writes: bool) -> int:
-        """Which elements can share a run with this one: those of the same number.
+        """A number that is the same for all elements that can be in one run with this one.
 
         Raises:
-            UsageError: the protocol cannot name this element; says what it can.
+            UsageError: the protocol does not have this element; the message has what it has.
         """
 
     def most(self, symbol: str, *, writes: bool) -> int:
-        """How many elements of a kind a run (44 to 47) holds."""
+        """The most elements of a kind in one run (44 to 47)."""
 
     def mixed_words(self, *, writes: bool) -> int:
-        """How many words a mixed request (48, 49) holds; 0 if there is none."""
+        """The most words in one mixed request (48, 49); 0 if there is no such request."""
 
     def echo_may_pass(self, request: Request[A]) -> bool:
         """True if the request's own echo could be taken for its answer."""
 
     @property
     def unique_fences(self) -> bool:
-        """True if the answer to a fence can be that of no other request, whatever was asked before."""
+        """True if the answer to a fence always differs from the answers to all other requests."""
 
     def shape(self, request: Request[Any]) -> bytes:
-        """What an answer shows of its request: fences avoid those of what was asked."""
+        """What an answer shows of its request; a fence must have another shape than earlier requests."""
 
     def fence(self, nonce: bytes, asked: Collection[bytes] | None) -> Request[Any] | None:
-        """A request whose answer cannot be taken for that of any other; None if there is none left.
+        """A request whose answer differs from all others that may be received; None if there is none left.
 
         Args:
             nonce: never the same twice.
-            asked: the shapes of the requests whose answers may still come; None if that is not known.
+            asked: the shapes of the requests whose answers may still be received; None if not known.
         """
 
 
@@ -242,7 +241,7 @@ def require_commands(codec: Codec, *needed: Command) -> None:
     """Check that a protocol has these commands, before anything is opened or sent.
 
     Raises:
-        UsageError: it lacks one.
+        UsageError: it does not have one of them.
     """
     missing = [command for command in needed if command not in codec.commands]
     if not missing:
@@ -260,7 +259,7 @@ _ANOTHER_WAY: Final = "save the program with the vendor's software; 'fatektool s
 
 
 def require_station(codec: Codec, station: int) -> None:
-    """Check that one PLC can be asked under this station, before anything is opened or sent.
+    """Check that one PLC can have this station, before anything is opened or sent.
 
     Raises:
         UsageError: it cannot.
@@ -268,5 +267,5 @@ def require_station(codec: Codec, station: int) -> None:
     if station not in codec.stations:
         raise UsageError(
             f"station: expected {codec.stations[0]} to {codec.stations[-1]}, got {station}",
-            hint="0 is broadcast: no PLC answers it" if not station else f"{codec.name} has no others",
+            hint="0 is a broadcast: no PLC answers it" if not station else f"{codec.name} has no others",
         )

@@ -1,8 +1,8 @@
-"""The fourteen commands as values: a frozen dataclass a request, checked against its limits when made.
+"""The fourteen commands as values: one frozen dataclass for each, checked against its limits when made.
 
-A request knows what it asks, not how it is written: a codec (``facon``) turns it into bytes and turns
-the answer's bytes into the type that the request names in brackets, ``Request[tuple[int, ...]]``. An
-answer is the value it carries; a command that only acknowledges answers ``None``.
+A request has what is asked, but not its format: a codec (``facon``) converts it into bytes, and the answer's
+bytes into the type in brackets, ``Request[tuple[int, ...]]``. The answer to a command that is only
+acknowledged is ``None``.
 
 ::
 
@@ -12,9 +12,9 @@ answer is the value it carries; a command that only acknowledges answers ``None`
     50 WritePage         53 ReadDetailedStatus
 
 Limits: FACON paper, section 4.2. The M-series paper, section 2.5, has the same numbers of elements: 256
-discretes, 64 registers, 64 and 32 of mixed ones. That a 32-bit element counts as two words, in a run and in a
-mixed request, is FACON's rule; the M-series paper only says "1 to 64 words" in its list of commands. It is
-kept for both. How long a run may be differs from protocol to protocol: the codec checks it.
+discretes, 64 registers, 64 and 32 mixed words. FACON counts a 32-bit element as two words, in a run and in a
+mixed request; the M-series paper only has "1 to 64 words" in its list of commands. The rule is used for both.
+The length of a run depends on the protocol: the codec checks it.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ class Command(IntEnum):
 
     @property
     def words(self) -> str:
-        """The command in words."""
+        """The command as text."""
         return COMMAND_WORDS[self]
 
 
@@ -91,7 +91,7 @@ PROGRAM_COMMANDS: Final = frozenset({Command.READ_PAGE, Command.WRITE_PAGE})
 
 
 class Control(IntEnum):
-    """What 42 does to a discrete."""
+    """The operation of 42 on a discrete."""
 
     DISABLE = 1
     ENABLE = 2
@@ -100,9 +100,9 @@ class Control(IntEnum):
 
 
 class Request(Value, Generic[A]):
-    """One thing asked of a PLC, and the type ``A`` of its answer.
+    """One request to a PLC, with the type ``A`` of its answer.
 
-    ``writes`` is True when the request changes something, so that it must not be sent twice blindly.
+    ``writes`` is True if the request changes something, so it must not be sent twice without a read-back.
     """
 
     __slots__ = ()
@@ -205,7 +205,7 @@ class WriteRegisters(Request[None]):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ReadMixed(Request[tuple[int, ...]]):
-    """48: elements of any kind, at most 64 words in all; a discrete reads as 0 or 1."""
+    """48: elements of any kind, at most 64 words in total; a discrete reads as 0 or 1."""
 
     elements: tuple[Element, ...]
     command: ClassVar[Command] = Command.READ_MIXED
@@ -216,7 +216,7 @@ class ReadMixed(Request[tuple[int, ...]]):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class WriteMixed(Request[None]):
-    """49: elements of any kind with their values, at most 32 words in all."""
+    """49: elements of any kind with their values, at most 32 words in total."""
 
     items: tuple[tuple[Element, int], ...]
     command: ClassVar[Command] = Command.WRITE_MIXED
@@ -230,7 +230,7 @@ class WriteMixed(Request[None]):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Loopback(Request[bytes]):
-    """4E: the PLC answers the very data it was sent, 0 to 256 characters."""
+    """4E: the PLC answers the data of the request, 0 to 256 characters."""
 
     data: bytes
     command: ClassVar[Command] = Command.LOOPBACK
@@ -268,14 +268,14 @@ class WritePage(Request[None]):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ReadDetailedStatus(Request["DetailedStatus | RawStatus"]):
-    """53: 64 status bytes, the ladder size among them; raw bytes where no paper says what they mean."""
+    """53: 64 status bytes, with the ladder size; raw bytes if no paper describes them."""
 
     command: ClassVar[Command] = Command.DETAILED_STATUS
 
 
 def _discrete(element: Element, command: Command) -> None:
     if element.kind.bits != 1:
-        raise UsageError(f"{command.words} ({command:02X}) takes discretes (X Y M S T C), got {element}")
+        raise UsageError(f"{command.words} ({command:02X}): expected a discrete (X Y M S T C), got {element}")
 
 
 def _discrete_run(first: Element, count: int, command: Command) -> None:
@@ -285,7 +285,7 @@ def _discrete_run(first: Element, count: int, command: Command) -> None:
 
 def _register_run(first: Element, count: int, command: Command) -> None:
     if first.kind.bits == 1:
-        raise UsageError(f"{command.words} ({command:02X}) takes registers and words, got {first}")
+        raise UsageError(f"{command.words} ({command:02X}): expected a register or word, got {first}")
     _run(first, count, count, command)
 
 
@@ -302,7 +302,7 @@ def _mixed(elements: Sequence[Element], limit: int, command: Command) -> None:
     words = sum(element.kind.words for element in elements)
     if not 1 <= words <= limit:
         raise UsageError(
-            f"{command.words} ({command:02X}): expected 1 to {limit} words in all "
+            f"{command.words} ({command:02X}): expected 1 to {limit} words in total "
             f"(32 bits count 2), got {words}"
         )
 

@@ -8,8 +8,8 @@ An element is a kind and an address. The kinds fall into three widths (FACON pap
     32 bits  DWX DWY DWM DWS DWT DWC        32 discretes, address a multiple of 8, next one 32 on
              DRT DRC DR DD DF               two registers, low word first, next one 2 on
 
-Addresses are decimal. The ranges are the largest of any model: a PLC answers error A past its own.
-F and DF are named by the M-series paper only (section 2.4); FACON writes them as it does R and DR.
+Addresses are decimal. The ranges are the largest of all models: a PLC answers error A above its own.
+F and DF are only in the M-series paper (section 2.4); FACON writes them like R and DR.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ class ElementKind(Value):
     Attributes:
         symbol: one to three capital letters.
         bits: width of one element: 1, 16 or 32.
-        stride: how far apart the addresses of consecutive elements are.
+        stride: the distance between the addresses of consecutive elements.
         step: an address is a multiple of this.
         last: the largest address of any model.
-        digits: how many digits FACON writes an address with.
+        digits: the digits of an address in FACON.
     """
 
     symbol: str
@@ -47,7 +47,7 @@ class ElementKind(Value):
 
     @property
     def words(self) -> int:
-        """What one element counts against the limits of 46 to 49: a discrete 1, 32 bits 2."""
+        """Words that one element counts in the limits of 46 to 49: a discrete 1, 32 bits 2."""
         return 2 if self.bits == 32 else 1
 
 
@@ -102,7 +102,7 @@ class Element:
             below = self.address - self.address % kind.step
             raise UsageError(
                 f"element {self}: expected an address that is a multiple of {kind.step}, got {self.address}",
-                hint=f"{self.symbol}{below} holds {self.symbol[-1]}{self.address}",
+                hint=f"{self.symbol}{below} contains {self.symbol[-1]}{self.address}",
                 element=str(self),
             )
 
@@ -133,15 +133,15 @@ class Element:
 
     @classmethod
     def parse(cls, text: str) -> Element:
-        """Read an element as people write it: ``R12``, ``x0016``, ``DWM0``.
+        """Parse an element: ``R12``, ``x0016``, ``DWM0``.
 
         Raises:
-            UsageError: it is no element.
+            UsageError: it is not an element.
         """
         match = _WRITTEN.fullmatch(text.strip())
         if match is None:
             raise UsageError(
-                f"{text!r} is no element: expected a symbol and a decimal address such as R12, X16 or DWM0",
+                f"{text!r} is not an element: expected symbol and decimal address such as R12, X16 or DWM0",
                 element=text,
             )
         return cls(match[1].upper(), int(match[2]))
@@ -149,10 +149,10 @@ class Element:
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Stretch(Value):
-    """Neighbours of one kind, so many from a first one on: all registers R of a PLC without naming each.
+    """Consecutive elements of one kind, a number of them from a first one: such as all registers R of a PLC.
 
     Raises:
-        UsageError: there is no such last one, or not even one.
+        UsageError: the last one does not exist, or there is none.
     """
 
     first: Element
@@ -165,7 +165,7 @@ class Stretch(Value):
 
     @property
     def last(self) -> Element:
-        """The last of them."""
+        """The last element."""
         return self.first.after(self.count - 1)
 
     def __iter__(self) -> Iterator[Element]:

@@ -1,4 +1,4 @@
-"""A frame explained, field by field, for people: ``decode``, and who reads a trace."""
+"""Explanations of frames, field by field, for ``decode`` and readers of traces."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class FrameRole(Enum):
-    """What a frame is in the conversation."""
+    """The role of a frame: request, answer, or unknown."""
 
     REQUEST = "request"
     ANSWER = "answer"
@@ -24,9 +24,9 @@ class Field:
     """One field of a frame.
 
     Attributes:
-        name: the protocol's word for it.
+        name: as in the protocol's paper.
         raw: its bytes.
-        meaning: what they say.
+        meaning: of these bytes.
     """
 
     name: str
@@ -36,15 +36,15 @@ class Field:
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
-    """One frame, or bytes that are none.
+    """One frame, or bytes that are not a frame.
 
     Attributes:
-        role: what it is.
+        role: request, answer, or unknown.
         raw: all its bytes.
-        fields: the bytes, divided; together they are ``raw``.
-        station: who is asked or who answers; None for no frame.
-        command: the command's code; None for no frame.
-        checksum_ok: None where there is none.
+        fields: the parts of the bytes; together they are ``raw``.
+        station: of the PLC that is asked or answers; None if not a frame.
+        command: the command's code; None if not a frame.
+        checksum_ok: None if there is no checksum.
         fault: what is wrong, None if nothing is.
     """
 
@@ -58,18 +58,18 @@ class Explanation:
 
 
 class Explainer(Protocol):
-    """Explains a conversation of one protocol, piece by piece, in the order it was sent."""
+    """Explains the frames of one protocol, piece by piece, in the order in which they were sent."""
 
     @property
     def form(self) -> str:
-        """What a frame looks like, in words."""
+        """The form of a frame, as text."""
 
     @property
     def binary(self) -> bool:
-        """True if its bytes are better shown as hex than as characters."""
+        """True if its bytes should be shown as hex, not as characters."""
 
     def explain(self, data: bytes, role: FrameRole = FrameRole.EITHER) -> Iterator[Explanation]:
-        """Explain all frames in a piece of the conversation, and the bytes that are none.
+        """Explain all frames in a piece of the trace, and the bytes outside frames.
 
         Args:
             data: the bytes.

@@ -1,4 +1,4 @@
-"""Frames, checksums and error texts by the name of a protocol, for programs with a line of their own.
+"""Frames, checksums and error texts by the name of a protocol, for programs with their own connection.
 
 ::
 
@@ -24,17 +24,17 @@ A = TypeVar("A")
 
 
 def frame(request: Request[Any], station: int = 1, protocol: str = "facon", *, number: int = 0) -> bytes:
-    """A request as the frame that goes over the wire.
+    """A request as a frame, as sent on the wire.
 
     Args:
         request: what is asked: a value of ``fatektool.protocol.commands``, such as the ``request`` of what
             ``fatektool.parse_command`` returns.
-        station: of the PLC; 0 for all of them.
+        station: of the PLC; 0 for a broadcast.
         protocol: a name of ``--protocol``.
         number: of a Modbus TCP request, which its answer repeats; 0 for the others.
 
     Raises:
-        UsageError: no such protocol, or it cannot say this.
+        UsageError: no such protocol, or it has no such request.
     """
     return codec_named(protocol).encode(station, request, number)
 
@@ -42,13 +42,13 @@ def frame(request: Request[Any], station: int = 1, protocol: str = "facon", *, n
 def answer_frame(
     request: Request[A], answer: A, station: int = 1, protocol: str = "facon", *, number: int = 0
 ) -> bytes:
-    """The frame in which a PLC gives this answer to a request; the arguments are those of ``frame``.
+    """The frame of a PLC with this answer to a request; the arguments are those of ``frame``.
 
     Raises:
-        UsageError: no such protocol, or it cannot say this.
+        UsageError: no such protocol, or it has no such request.
     """
     codec = codec_named(protocol)
-    codec.encode(station, request, number)  # what cannot be asked has no answer
+    codec.encode(station, request, number)  # an invalid request has no answer
     return codec.encode_answer(station, request, answer, number)
 
 
@@ -61,18 +61,18 @@ def raw_frame(
     answer: bool = False,
     number: int = 0,
 ) -> bytes:
-    """Any command with any data as a frame, whether the protocol has such a command or not.
+    """Any command with any data as a frame, also a command that the protocol does not have.
 
     Args:
         command: the command's code, 0 to 255; in Modbus the function.
-        data: what is between command and checksum; of an answer with its error code.
+        data: the bytes between command and checksum; of an answer with its error code.
         station: 0 for all of them.
         protocol: a name of ``--protocol``.
-        answer: True for an answer, which M-series frames say.
+        answer: True for an answer, which has another form in the M-series.
         number: of a Modbus TCP request.
 
     Raises:
-        UsageError: no such protocol, or no frame of it can hold this.
+        UsageError: no such protocol, or it does not fit into a frame.
     """
     codec = codec_named(protocol)
     if not 0 <= command <= 0xFF:
@@ -86,9 +86,9 @@ def error_frame(
     """The answer that refuses a command.
 
     Args:
-        command: that was asked; in Modbus the function.
+        command: of the request; in Modbus the function.
         code: the error code: 1 to F in FACON, 1 to FF in the others.
-        station: who refuses.
+        station: of the PLC that refuses.
         protocol: a name of ``--protocol``.
         number: of a Modbus TCP request.
 
@@ -102,10 +102,10 @@ def error_frame(
 
 
 def checksum(data: bytes, protocol: str = "facon") -> bytes:
-    """The checksum of some bytes, as it is sent.
+    """The checksum of some bytes, as sent.
 
     Args:
-        data: what it covers: see the table above. FACON's begins with STX (02).
+        data: the bytes that it covers: see the table above. FACON's begins with STX (02).
         protocol: a name of ``--protocol``.
 
     Raises:
@@ -115,7 +115,7 @@ def checksum(data: bytes, protocol: str = "facon") -> bytes:
 
 
 def error_text(code: int, protocol: str = "facon") -> str:
-    """What an error code in an answer means, in words.
+    """The meaning of an error code in an answer.
 
     Args:
         code: 0 for no error.

@@ -1,6 +1,6 @@
-"""The error codes of a PLC's answer, in words, with what to do next.
+"""The error codes of a PLC's answer, with their meaning and the next step.
 
-FACON paper, section 3. The M-series paper has words of its own: ``mseries_errors``.
+FACON paper, section 3. The M-series paper has its own texts: ``mseries/errors``.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ MEANINGS: Final = {
     0x6: "cannot run, the PLC's ID differs from the ladder's ID",
     0x7: "cannot run, syntax error in the program",
     0x9: "cannot run, an instruction of the program is not supported by this PLC",
-    0xA: "illegal address, past what this PLC has",
+    0xA: "illegal address, above the range of this PLC",
 }
 
 # What to do next is this project's advice, the meanings are the paper's: [E:error-advice].
 _NEXT: Final = {
-    0x3: "take the ROM pack out, or write the ROM pack itself",
+    0x3: "remove the ROM pack, or write the ROM pack itself",
     0x5: "restore a good backup: the program in the PLC is damaged",
     0x6: "the program was locked to a PLC with another ID: load one made for this PLC, or set the ID",
     0x7: "restore a backup that ran on this PLC",
@@ -37,13 +37,13 @@ _NEXT: Final = {
 }
 
 PROGRAM_REFUSED: Final = (
-    "this PLC may not offer its program over the link: the FBs papers list neither 4F nor 50, and a password "
-    "may be set; what stays is the engineer's project file (.pdw), which 'fatektool listing' reads"
+    "this PLC may not give its program over the line: the FBs papers have neither 4F nor 50, and a password "
+    "may be set; use the engineer's project file (.pdw), which 'fatektool listing' reads"
 )
 
 
 def meaning_of(code: int) -> str:
-    """What an error code means, in words."""
+    """The meaning of an error code."""
     return MEANINGS.get(code, "a code that no paper lists")
 
 
@@ -53,7 +53,7 @@ def refusal(code: int, command: int, asked: str) -> PlcRefused:
     Args:
         code: 1 to 15.
         command: the command's code.
-        asked: what was asked, in words: ``read program page 5``.
+        asked: the request as text: ``read program page 5``.
     """
     hint = _NEXT.get(code)
     if code in {0x2, 0x4, 0xA} and command in PROGRAM_COMMANDS:
@@ -67,7 +67,7 @@ def refusal(code: int, command: int, asked: str) -> PlcRefused:
 
 
 def asked(request: Request[A]) -> str:
-    """What a request asks, in words: ``read program page 5``, ``read registers R12``."""
+    """A request as text: ``read program page 5``, ``read registers R12``."""
     if isinstance(request, RunStop):
         return "RUN" if request.run else "STOP"
     words = request.command.words

@@ -1,4 +1,4 @@
-"""How to see whether a write took: what to read, and what it then answers."""
+"""The check whether a write was made: the read, and the expected answer."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 def read_back(  # noqa: PLR0911  # a case a command
     request: Request[None],
 ) -> tuple[Request[Any], Callable[[Any], bool]]:
-    """The request that reads back what a write wrote, and the test of its answer.
+    """The request that reads back a write, and the test of its answer.
 
     Args:
         request: a request whose ``writes`` is True.

@@ -1,4 +1,4 @@
-"""The client's parts of each protocol, by the names of ``--protocol``; loaded when they are asked for."""
+"""The client's parts of each protocol, by the names of ``--protocol``; loaded when needed."""
 
 from __future__ import annotations
 

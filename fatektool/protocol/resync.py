@@ -1,16 +1,16 @@
-"""Frames cut out of a stream of bytes, whatever its chunks, and found again behind bytes that are none.
+"""Splits a stream of bytes into frames, and finds the next frame after bytes that are not a frame.
 
 ::
 
     Delimited    begin ... end               FACON, Modbus ASCII
-    Measured     a beginning that says how   M-series, Modbus RTU and TCP
-                 long the frame is
+    Measured     a beginning that has    M-series, Modbus RTU and TCP
+                 the frame's length
 
-As little as possible is dropped, so a good frame behind a bad one is found. Where a byte begins a frame
-wherever it comes, a second one before the end begins another, and what was before it is dropped. Where the
-length alone says where a frame ends, something is a frame if all that can be known of its beginning holds. If
-it turns out to be none, it is dropped up to what could be the next beginning, even one within what its length
-had covered. A frame that has not come whole when its time is over is dropped in the same way
+As little as possible is dropped, so that a valid frame after an invalid one is found. If a byte always begins
+a frame, a second one before the end begins another frame, and the bytes before it are dropped. If only the
+length gives the end of a frame, bytes are accepted as a frame if everything that is known of its beginning is
+valid. If they are not a frame after all, they are dropped up to the next possible beginning, even one within
+their length. A frame that is incomplete when its time is over is dropped in the same way
 (``expect_no_more``).
 """
 
@@ -28,51 +28,51 @@ _MAX_BUFFER: Final = 1 << 16
 
 
 class Resync(ABC):
-    """The bytes that were fed and not yet given as frames: a ``Decoder`` but for ``next_frame``."""
+    """The bytes that were not yet returned as frames: a ``Decoder`` without ``next_frame``."""
 
     def __init__(self) -> None:
         self._buffer = bytearray()
         self._all_came = False
 
     def feed(self, data: bytes) -> None:
-        """Take bytes from the wire; of more than 64 KiB not asked for, the oldest are forgotten."""
+        """Add received bytes; of more than 64 KiB, the oldest are dropped."""
         self._all_came = False
         self._buffer += data
         if len(self._buffer) > _MAX_BUFFER:
             del self._buffer[:-_MAX_BUFFER]
 
     def clear(self) -> int:
-        """Forget what was fed and not yet given; return how many bytes that was."""
+        """Drop all bytes that were not returned as frames; return their number."""
         left = len(self._buffer)
         self._buffer.clear()
         return left
 
     @abstractmethod
     def expect_no_more(self) -> bool:
-        """The time for what was fed is over; True if ``next_frame`` may find something in it now."""
+        """Note that no more bytes are expected; True if ``next_frame`` may find something now."""
 
     @abstractmethod
     def next_frame(self) -> Frame | None:
-        """Give the next whole frame, or None if more bytes are needed.
+        """The next complete frame, or None if more bytes are needed.
 
         Raises:
-            FrameError: bytes that are no frame; they are dropped.
+            FrameError: bytes that are not a frame; they are dropped.
         """
 
     def _dropped(self, message: str, count: int, *, checksum: bool = False) -> FrameError:
-        """Drop so many bytes, and say why."""
+        """Drop a number of bytes; returns the error with the reason."""
         raw = bytes(self._buffer[:count])
         del self._buffer[:count]
         return FrameError(message, raw=raw, checksum=checksum)
 
 
 class Delimited(Resync):
-    """Frames from a byte that is never inside a frame to an end that is not either.
+    """Frames from a beginning to an end, neither of which can be inside a frame.
 
     Attributes:
         begin: the byte that begins a frame.
         end: the bytes that end it.
-        longest: how long a frame can be.
+        longest: the most bytes of a frame.
     """
 
     begin: ClassVar[bytes]
@@ -80,14 +80,14 @@ class Delimited(Resync):
     longest: ClassVar[int]
 
     def expect_no_more(self) -> bool:
-        """False: nothing can follow a frame that has not ended, as it would have begun another."""
+        """False: after an incomplete frame there is no other beginning."""
         return False
 
     def next_frame(self) -> Frame | None:
-        """Give the next whole frame, or None if more bytes are needed.
+        """The next complete frame, or None if more bytes are needed.
 
         Raises:
-            FrameError: bytes that are no frame; they are dropped.
+            FrameError: bytes that are not a frame; they are dropped.
         """
         buffer = self._buffer
         if not buffer:
@@ -98,7 +98,7 @@ class Delimited(Resync):
         end = buffer.find(self.end, 1)
         again = buffer.find(self.begin, 1, end if end > 0 else len(buffer))
         if again > 0:
-            raise self._dropped("a frame broke off and another began", again)
+            raise self._dropped("an incomplete frame, then another beginning", again)
         if end < 0:
             if len(buffer) >= self.longest:
                 raise self._dropped(f"no end within {self.longest} bytes", len(buffer))
@@ -112,23 +112,23 @@ class Delimited(Resync):
         """The frame from begin to end.
 
         Raises:
-            FrameError: a wrong checksum, or no frame.
+            FrameError: a wrong checksum, or not a frame.
         """
 
 
 class Measured(Resync):
-    """Frames that say at their beginning how long they are."""
+    """Frames with their length at the beginning."""
 
     def expect_no_more(self) -> bool:
-        """Drop a frame that began and does not end; look at what follows its beginning."""
+        """Drop an incomplete frame; look at the bytes after its beginning."""
         self._all_came = bool(self._buffer)
         return self._all_came
 
     def next_frame(self) -> Frame | None:
-        """Give the next whole frame, or None if more bytes are needed.
+        """The next complete frame, or None if more bytes are needed.
 
         Raises:
-            FrameError: bytes that are no frame; they are dropped.
+            FrameError: bytes that are not a frame; they are dropped.
         """
         buffer = self._buffer
         if not buffer:
@@ -149,37 +149,37 @@ class Measured(Resync):
         raise self._no_frame(sizes)
 
     def _no_frame(self, sizes: tuple[int, ...] | None) -> FrameError:
-        """Drop what is no frame up to what could be the beginning of one."""
+        """Drop bytes up to the next possible beginning of a frame."""
         drop = self._next_beginning()
         if not sizes:
             return self._dropped(self._noise(), drop)
         whole = [size for size in sizes if size <= len(self._buffer)]
         if not whole:
-            return self._dropped("a frame broke off", drop)
+            return self._dropped("an incomplete frame", drop)
         fault = self._fault(bytes(self._buffer[: whole[-1]]))
-        if fault.checksum and drop >= whole[-1]:  # nothing within it could begin another: it was one frame
+        if fault.checksum and drop >= whole[-1]:  # no other beginning within it: it was one frame
             return self._dropped(fault.message, whole[-1], checksum=True)
         return self._dropped(fault.message, drop)
 
     def _next_beginning(self) -> int:
-        """Where behind the first byte the next frame may begin; the end of all bytes if nowhere."""
+        """The next possible beginning of a frame after the first byte; the end of all bytes if none."""
         at = 1
         while at < len(self._buffer) and self._sizes(at) == ():
             at += 1
         return at
 
     def _noise(self) -> str:
-        """What is said of a first byte that begins no frame."""
+        """The message for a first byte that begins no frame."""
         return "noise outside a frame"
 
     @abstractmethod
     def _sizes(self, at: int) -> tuple[int, ...] | None:
-        """How long a frame that begins here may be, the shortest first; None if too little of it is there."""
+        """The possible lengths of a frame that begins here, the shortest first; None if not known yet."""
 
     @abstractmethod
     def _frame(self, raw: bytes) -> Frame | None:
-        """The frame that bytes of one of these sizes are, or None."""
+        """The frame in bytes of one of these sizes, or None."""
 
     @abstractmethod
     def _fault(self, raw: bytes) -> FrameError:
-        """Why bytes of one of these sizes are no frame."""
+        """The reason why bytes of one of these sizes are not a frame."""

@@ -3,17 +3,17 @@
 ::
 
     40   byte 1 flags · 2 model · 3 reserved
-    53   byte 1 flags · 2 main unit type · 3 main unit points · 4 OS version, a digit a nibble
+    53   byte 1 flags · 2 main unit type · 3 main unit points · 4 OS version, one digit each nibble
          5-6 ladder size in words · 7-8 discrete inputs · 9-10 discrete outputs
          11-12 analog inputs · 13-14 analog outputs · 15-16 M · 17-18 S · 19-20 L
          21-22 R · 23-24 D · 25-26 timers · 27-28 counters · 29-64 reserved
 
-16-bit values come high byte first (FACON paper, section 4.2, commands 40 and 53). A code that no
-paper names is shown as a code: real units answer with such.
+16-bit values have their high byte first (FACON paper, section 4.2, commands 40 and 53). A code that is in no
+paper is shown as a code: real units have such.
 
-The M-series paper (section 2.5.1) has the same byte 1 in 40, but for bit 3, which is for a memory card
-instead of a ROM pack; it reserves bytes 2 and 3. It lists 53 without a layout: an answer of 64 bytes is
-assumed to be FACON's, any other is kept as it is.
+The M-series paper (section 2.5.1) has the same byte 1 in 40, except bit 3: a memory card instead of a ROM
+pack. Bytes 2 and 3 are reserved. It has 53 without a layout: an answer of 64 bytes is assumed to have
+FACON's, any other is kept as bytes.
 """
 
 from __future__ import annotations
@@ -56,16 +56,16 @@ class StatusFlags(Value):
 
     @classmethod
     def parse(cls, byte: int) -> StatusFlags:
-        """Read the seven flags of one byte; bit 7 is reserved."""
+        """Parse the seven flags of one byte; bit 7 is reserved."""
         return cls(*(bool(byte >> bit & 1) for bit in range(7)))
 
     @property
     def byte(self) -> int:
-        """The flags as one byte again."""
+        """The flags as one byte."""
         return sum(getattr(self, name) << bit for bit, name in enumerate(self.__slots__))
 
     def document(self) -> dict[str, bool]:
-        """The flags as JSON has them."""
+        """The flags for JSON."""
         return {name: getattr(self, name) for name in self.__slots__}
 
 
@@ -89,17 +89,17 @@ class BriefStatus(Value):
 
     @property
     def status1(self) -> int:
-        """Byte 1 as it came."""
+        """Byte 1 as received."""
         return self.flags.byte | self.bit7 << 7
 
     @property
     def model(self) -> str | None:
-        """The model that status byte 2 names, None for a code the paper does not list."""
+        """The model in status byte 2; None for a code that the paper does not list."""
         return None if self.m_series else MODELS.get(self.status2)
 
     @classmethod
     def parse(cls, data: bytes, *, m_series: bool = False) -> BriefStatus:
-        """Read the three bytes of a 40 answer.
+        """Parse the three bytes of an answer to 40.
 
         Raises:
             FrameError: not three bytes.
@@ -110,13 +110,13 @@ class BriefStatus(Value):
         return cls(StatusFlags.parse(flags), status2, status3, m_series, bit7=flags > 0x7F)
 
     def to_bytes(self) -> bytes:
-        """The three bytes again."""
+        """The three bytes."""
         return bytes([self.status1, self.status2, self.status3])
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class System(Value):
-    """What a PLC is and has, bytes 2 to 28 of 53: the part of it that does not change by itself."""
+    """Model and sizes of a PLC, bytes 2 to 28 of 53: the part that does not change by itself."""
 
     unit_type: int
     main_unit_points: int
@@ -136,18 +136,18 @@ class System(Value):
 
     @property
     def unit_type_name(self) -> str | None:
-        """``MA/MU`` or ``MC``, None for a code the paper leaves open."""
+        """``MA/MU`` or ``MC``; None for a code that the paper does not list."""
         return UNIT_TYPES.get(self.unit_type)
 
     @property
     def points(self) -> int | None:
-        """I/O points of the main unit; FBs units (OS 4 and later) count by a table of their own."""
+        """I/O points of the main unit; FBs units (OS 4 and later) have their own table."""
         major = self.os_version.partition(".")[0]
         newer = major.isdigit() and int(major) >= FBS_OS_MAJOR
         return (POINTS_FBS if newer else POINTS_FB).get(self.main_unit_points)
 
     def document(self) -> dict[str, Any]:
-        """The system as JSON has it, each code beside its name."""
+        """The system for JSON, each code with its name."""
         found: dict[str, Any] = {name: getattr(self, name) for name in self.__slots__}
         found["unit_type"] = {"code": self.unit_type, "name": self.unit_type_name}
         found["main_unit_points"] = {"code": self.main_unit_points, "points": self.points}
@@ -162,7 +162,7 @@ class DetailedStatus(Value):
         flags: byte 1.
         system: bytes 2 to 28.
         raw: all 64 bytes, the reserved ones too.
-        assumed: True if no paper says that this PLC's bytes have this layout.
+        assumed: True if no paper has this layout for this PLC.
     """
 
     flags: StatusFlags
@@ -172,7 +172,7 @@ class DetailedStatus(Value):
 
     @classmethod
     def parse(cls, data: bytes, *, assumed: bool = False) -> DetailedStatus:
-        """Read the 64 bytes of a 53 answer.
+        """Parse the 64 bytes of an answer to 53.
 
         Raises:
             FrameError: not 64 bytes.

@@ -1,8 +1,8 @@
 """Raw bits as typed values and back: ``u16``, ``i16``, ``bcd``, ``hex``, ``u32``, ``i32``, ``f32``, ``str``.
 
-A PLC knows bits alone; what they mean is the program author's. So a type is asked for with the element.
-Without one a register is a signed number, as the PLC's own functions take it; a word of discretes (``WM8``)
-is unsigned, and a discrete a bool.
+A PLC has only bits; the author of its program decides their type. So the user gives a type with the element.
+By default a register is a signed number, as for the PLC's own functions; a word of discretes (``WM8``) is
+unsigned, and a discrete a bool.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Value = bool | int | float | str
 
 
 class ValueType(Enum):
-    """How bits are read."""
+    """The type of a value."""
 
     BOOL = "bool"
     U16 = "u16"
@@ -39,7 +39,7 @@ class ValueType(Enum):
 
     @property
     def bits(self) -> int | None:
-        """How many bits it takes; None for as many as the element has."""
+        """Its number of bits; None for that of the element."""
         return _BITS[self]
 
 
@@ -70,7 +70,7 @@ _REAL: Final = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?", 
 
 
 def default_type(kind: ElementKind) -> ValueType:
-    """The type of an element of this kind when none is asked for."""
+    """The default type of an element of this kind."""
     if kind.bits == 1:
         return ValueType.BOOL
     of_discretes = "W" in kind.symbol
@@ -88,7 +88,7 @@ def decode(raw: int, kind: ValueType, bits: int) -> Value:
         bits: the element's width.
 
     Raises:
-        DataError: the bits are no such value: a digit past 9 in BCD, a float that is no number.
+        DataError: not a value of this type: a digit above 9 in BCD, a float that is not a number.
     """
     match kind:
         case ValueType.BOOL:
@@ -100,7 +100,7 @@ def decode(raw: int, kind: ValueType, bits: int) -> Value:
         case ValueType.BCD:
             digits = raw_text(raw, bits)
             if not digits.isdecimal():
-                raise DataError(f"{digits} is no BCD number")
+                raise DataError(f"{digits} is not a BCD number")
             return int(digits)
         case ValueType.HEX:
             return raw_text(raw, bits)
@@ -111,25 +111,25 @@ def decode(raw: int, kind: ValueType, bits: int) -> Value:
 def _float_of(raw: int) -> float:
     number: float = struct.unpack(">f", raw.to_bytes(4, "big"))[0]
     if not math.isfinite(number):
-        raise DataError(f"{raw:08X} is no number as f32")
+        raise DataError(f"{raw:08X} is not a number as f32")
     return number
 
 
 def raw_text(raw: int, bits: int) -> str:
-    """Raw bits in hex, a digit for each four; 0 or 1 for a discrete."""
+    """Raw bits in hex; 0 or 1 for a discrete."""
     return f"{raw:0{max(1, bits // 4)}X}"
 
 
 def encode(text: str, kind: ValueType | None, bits: int) -> int:
-    """A value as people write it, as unsigned bits.
+    """A value in a text, as unsigned bits.
 
     Args:
         text: ``4261``, ``-1``, ``0x5555``, ``1.5``, ``on``.
-        kind: its type; None for an element's own, which takes signed and unsigned numbers.
+        kind: its type; None for the default, which accepts signed and unsigned numbers.
         bits: the element's width.
 
     Raises:
-        UsageError: it is no such value, or does not fit.
+        UsageError: not a value of this type, or out of range.
     """
     return text_bits(text, bits, TEXTS[kind]) if kind in TEXTS else _encode(text.strip(), kind, bits)
 

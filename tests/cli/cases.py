@@ -64,7 +64,7 @@ ERRORS = r"""
 2 status
     no PLC named; give --port, .*FATEKTOOL_PORT
 2 status -p PLC -s 0
-    station: expected 1 to 254, got 0; 0 is broadcast
+    station: expected 1 to 254, got 0; 0 is a broadcast
 2 status -p PLC -s 255
     station: expected 1 to 254, got 255; facon has no others
 2 status -p PLC -s x
@@ -208,7 +208,7 @@ ERRORS = r"""
 5 inspect damaged.json
     damaged.json: page 3: expected 256 hex digits
 5 verify damaged.json -p PLC
-    take another backup
+    use another backup
 5 diff old.json damaged.json
     damaged.json: page 3
 5 restore damaged.json -p PLC --yes
@@ -218,7 +218,7 @@ ERRORS = r"""
 5 restore large.json -p PLC --yes
     expected a ladder size of 400 words, got 500
 5 restore odd.json -p PLC --yes
-    does not hold: byte 0: .*--any-header
+    invalid header of the program .*: byte 0: .*--any-header
 5 decode 0011223344
     expected bytes from STX .02. to ETX .03.
 5 decode old.json

@@ -109,7 +109,7 @@ def test_a_program_that_is_not_offered() -> None:
     for request in (ReadPage(0), WritePage(0, bytes(128))):
         error = said(linked(Rules({ask_page(0): lambda _: SILENCE})), request)
         assert f"({request.command:02X}) in 4 tries" in error.message or "not known" in error.message
-        assert "FBs papers list neither 4F nor 50" in str(error.hint) or "not known" in error.message
+        assert "FBs papers have neither 4F nor 50" in str(error.hint) or "not known" in error.message
     error = said(linked(Rules()), ReadPage(0))
     assert "it answers loopbacks, but not this request; nothing received" in error.message
 

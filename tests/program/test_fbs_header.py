@@ -62,10 +62,10 @@ def test_the_sum_of_code_is_that_of_real_images(text: str, stored: int) -> None:
         (131, 37, "word 132: expected capacity less code in use, 4EDA, got 4EDB"),
         (132, 0, "word 132: expected capacity less code in use, 4EDB, got 0000"),
         (133, 0x400, "word 133: expected the address of code, 0200, got 0400"),
-        (134, 0x200, "word 134: expected an even address of 0202 to 024A behind the main units, got 0200"),
-        (134, 0x24C, "word 134: expected an even address of 0202 to 024A behind the main units, got 024C"),
-        (134, 0x203, "word 134: expected an even address of 0202 to 024A behind the main units, got 0203"),
-        (135, 0x24C, "word 135: expected the address behind all code, 024A, got 024C"),
+        (134, 0x200, "word 134: expected an even address of 0202 to 024A after the main units, got 0200"),
+        (134, 0x24C, "word 134: expected an even address of 0202 to 024A after the main units, got 024C"),
+        (134, 0x203, "word 134: expected an even address of 0202 to 024A after the main units, got 0203"),
+        (135, 0x24C, "word 135: expected the address after all code, 024A, got 024C"),
         (254, 0x55AA, "word 254: expected the mark AA55, got 55AA"),
     ],
 )
@@ -76,7 +76,7 @@ def test_each_word_that_does_not_agree_is_named(word: int, value: int, fault: st
     assert fault in found.faults
     assert not found.valid
     assert found.family == "fbs"
-    with pytest.raises(DataError, match="does not hold"):
+    with pytest.raises(DataError, match="invalid header"):
         Program(0x8000, pages_of(words, swapped=swapped)).require_header()
 
 

@@ -145,7 +145,7 @@ def test_a_file_with_a_changed_byte_is_read_right_or_refused() -> None:
         (b"", "not a WinProladder project"),
         (b"PK\3\4" * 100, "not a WinProladder project"),
         (head() + struct.pack("<HH", 0xFFFF, 0), "expected one program image in the project, got 0"),
-        (head(), "cut short"),
+        (head(), "is incomplete"),
         (head() + record(0x180A, bytes(100)) + b"\xff\xff\0\0", "has 100 bytes"),
         (head() + record(0x1003, b"\2\0X0\2\0on\0\0", 1) + b"\xff\xff\0\0", "expected the sum 0001"),
         (head() + record(0x1800, bytes(0x400)) + b"\xff\xff\0\0", "has 1024 bytes"),

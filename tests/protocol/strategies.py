@@ -80,7 +80,7 @@ def runs(draw: st.DrawFn, symbols: list[str]) -> tuple[Element, int]:
 
 @st.composite
 def mixtures(draw: st.DrawFn, limit: int, kinds: Iterable[str]) -> tuple[Element, ...]:
-    """Elements of any kind, at most ``limit`` words in all."""
+    """Elements of any kind, at most ``limit`` words in total."""
     mixture: list[Element] = []
     words = 0
     for element in draw(st.lists(elements(kinds), min_size=1, max_size=limit)):

@@ -81,7 +81,7 @@ def test_which_requests_change_something() -> None:
 
 @pytest.mark.parametrize("wrong", [R0, WM0, DWM0, DR0], ids=str)
 def test_discretes_only(wrong: Element) -> None:
-    expected = rf"takes discretes \(X Y M S T C\), got {wrong}"
+    expected = rf"expected a discrete \(X Y M S T C\), got {wrong}"
     for make in (ReadDisabled, ReadDiscretes):
         with pytest.raises(UsageError, match=expected):
             make(wrong, 1)
@@ -169,9 +169,9 @@ def test_32_words_of_32_bits(first: Element) -> None:
 
 
 def test_registers_only() -> None:
-    with pytest.raises(UsageError, match="takes registers and words, got X0"):
+    with pytest.raises(UsageError, match="expected a register or word, got X0"):
         ReadRegisters(X0, 1)
-    with pytest.raises(UsageError, match="takes registers and words, got X0"):
+    with pytest.raises(UsageError, match="expected a register or word, got X0"):
         WriteRegisters(X0, (1,))
 
 
@@ -207,9 +207,9 @@ def test_a_wrong_value_is_named_by_its_own_element() -> None:
 def test_64_words_to_read(elements: tuple[Element, ...]) -> None:
     request = ReadMixed(elements)
     assert request_of(one_frame(FACON.encode(1, request))) == request
-    with pytest.raises(UsageError, match=r"expected 1 to 64 words in all .*, got 65"):
+    with pytest.raises(UsageError, match=r"expected 1 to 64 words in total .*, got 65"):
         ReadMixed((*elements, Y0))
-    with pytest.raises(UsageError, match=r"expected 1 to 64 words in all .*, got 66"):
+    with pytest.raises(UsageError, match=r"expected 1 to 64 words in total .*, got 66"):
         ReadMixed((*elements, DWM0))
 
 
@@ -220,7 +220,7 @@ def test_64_words_to_read(elements: tuple[Element, ...]) -> None:
 def test_32_words_to_write(writes: tuple[tuple[Element, int], ...]) -> None:
     request = WriteMixed(writes)
     assert request_of(one_frame(FACON.encode(1, request))) == request
-    with pytest.raises(UsageError, match=r"expected 1 to 32 words in all .*, got 33"):
+    with pytest.raises(UsageError, match=r"expected 1 to 32 words in total .*, got 33"):
         WriteMixed((*writes, (R0, 0)))
 
 
@@ -243,7 +243,7 @@ def test_loopback_lengths() -> None:
 
 @pytest.mark.parametrize("byte", [b"\x02", b"\x03"])
 def test_a_frame_cannot_hold_its_own_ends(byte: bytes) -> None:
-    with pytest.raises(UsageError, match=r"STX \(02\) and ETX \(03\) cannot stand inside"):
+    with pytest.raises(UsageError, match=r"expected no STX \(02\) and no ETX"):
         FACON.encode(1, Loopback(b"AB" + byte + b"CD"))
 
 

@@ -88,7 +88,7 @@ def test_alignment(symbol: str) -> None:
         with pytest.raises(UsageError) as caught:
             Element(symbol, address)
         assert f"multiple of 8, got {address}" in caught.value.message
-        assert caught.value.hint == f"{symbol}8 holds {symbol[-1]}{address}"
+        assert caught.value.hint == f"{symbol}8 contains {symbol[-1]}{address}"
         assert caught.value.details == {"element": f"{symbol}{address}"}
     assert Element(symbol, 16).address == 16
 
@@ -135,7 +135,7 @@ def test_as_people_write_them(text: str, symbol: str, address: int) -> None:
     ],
 )
 def test_no_element(text: str) -> None:
-    with pytest.raises(UsageError, match="expected a symbol and a decimal address such as R12") as caught:
+    with pytest.raises(UsageError, match="expected symbol and decimal address such as R12") as caught:
         Element.parse(text)
     assert repr(text) in caught.value.message
 

@@ -236,7 +236,7 @@ def test_an_answer_without_error_character(request_: Request[Any]) -> None:
 def test_an_answer_alone_has_no_names() -> None:
     assert data_fields(one(EXAMPLES[6].answers, FrameRole.ANSWER)) == [
         ("error", "0", "none"),
-        ("values", "10A57FC40001", "of elements that the request names"),
+        ("values", "10A57FC40001", "of the elements in the request"),
     ]
 
 
@@ -275,7 +275,7 @@ def test_an_answer_that_does_not_fit_its_request_is_called_so(role: FrameRole) -
     _, stray, answers = explained(
         (FACON.encode(1, R12), FrameRole.REQUEST), (late, role), (EXAMPLES[6].answers, role)
     )
-    assert stray.fault == "expected 12 characters of values, as was asked, got 4"
+    assert stray.fault == "expected 12 characters of values, as requested, got 4"
     assert [field[0] for field in data_fields(answers)[1:]] == ["R12", "R13", "R14"]
 
 
@@ -309,7 +309,7 @@ def test_damage_does_not_name_values() -> None:
     ("code", "meaning"),
     [
         ("3", "REFUSED: write prohibited, a ROM pack is fitted"),
-        ("A", "REFUSED: illegal address, past what this PLC has"),
+        ("A", "REFUSED: illegal address, above the range of this PLC"),
         ("B", "REFUSED: a code that no paper lists"),
     ],
 )
@@ -323,7 +323,7 @@ def test_refusals(code: str, meaning: str) -> None:
 def test_broadcast() -> None:
     explanation = one(FACON.encode(0, RunStop(run=False)), FrameRole.REQUEST)
     assert explanation.station == 0
-    assert explanation.fields[1].meaning == "all (broadcast), no PLC answers"
+    assert explanation.fields[1].meaning == "broadcast to all PLCs, none answers"
 
 
 def test_station_255() -> None:

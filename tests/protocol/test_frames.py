@@ -59,7 +59,7 @@ def test_error_texts() -> None:
     for code, meaning in MEANINGS.items():
         assert fatektool.error_text(code) == meaning
     assert fatektool.error_text(2, "modbus-rtu") == "illegal data address, not in the PLC's Modbus map"
-    assert fatektool.error_text(0xB, "modbus-tcp") == "the gateway says: it asked the PLC, and got no answer"
+    assert fatektool.error_text(0xB, "modbus-tcp") == "the gateway reports: no answer from the PLC"
     assert fatektool.error_text(0xE) == "a code that no paper lists"
     assert fatektool.error_text(9, "mseries") == "cannot run, function not supported"
     assert fatektool.error_text(3, "mseries") == "a code that the M-series paper does not list"

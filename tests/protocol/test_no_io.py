@@ -28,7 +28,7 @@ ALLOWED = {
 BUILTINS = {"open", "print", "input", "breakpoint", "__import__", "exec", "eval"}
 LIBRARIES = {"modbus/pdu.py": "pymodbus"}
 """A library in the one file that may know it: of pymodbus its PDUs and checksums, which do no I/O."""
-OURS = ("fatektool.errors", "fatektool.value", "fatektool.protocol", "fatektool.plcports")
+OURS = ("fatektool.counts", "fatektool.errors", "fatektool.value", "fatektool.protocol", "fatektool.plcports")
 
 
 @each("path", FILES, ids=lambda path: str(path.relative_to(PACKAGE)))

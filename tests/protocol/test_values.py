@@ -118,7 +118,7 @@ def test_any_32_bits_come_back(raw: int, kind: ValueType) -> None:
 @given(st.integers(0, 0xFFFF_FFFF))
 def test_any_float_comes_back_or_is_none(raw: int) -> None:
     if raw >> 23 & 0xFF == 0xFF:
-        with pytest.raises(DataError, match="is no number as f32"):
+        with pytest.raises(DataError, match="is not a number as f32"):
             decode(raw, F32, 32)
     else:
         assert encode(repr(decode(raw, F32, 32)), F32, 32) == raw
@@ -129,7 +129,7 @@ def test_any_bits_are_bcd_or_none(raw: int, bits: int) -> None:
     raw &= (1 << bits) - 1
     digits = f"{raw:0{bits // 4}X}"
     if any(digit in "ABCDEF" for digit in digits):
-        with pytest.raises(DataError, match=rf"^{digits} is no BCD number$"):
+        with pytest.raises(DataError, match=rf"^{digits} is not a BCD number$"):
             decode(raw, BCD, bits)
     else:
         assert encode(str(decode(raw, BCD, bits)), BCD, bits) == raw
@@ -156,14 +156,14 @@ def test_any_number_as_a_float(number: float) -> None:
 def test_bits_that_are_no_float(raw: int) -> None:
     with pytest.raises(DataError) as caught:
         decode(raw, F32, 32)
-    assert caught.value.message == f"{raw:08X} is no number as f32"
+    assert caught.value.message == f"{raw:08X} is not a number as f32"
 
 
 @pytest.mark.parametrize(("raw", "bits"), [(0x000A, 16), (0xA000, 16), (0x1234_567F, 32)])
 def test_bits_that_are_no_bcd(raw: int, bits: int) -> None:
     with pytest.raises(DataError) as caught:
         decode(raw, BCD, bits)
-    assert caught.value.message == f"{raw:0{bits // 4}X} is no BCD number"
+    assert caught.value.message == f"{raw:0{bits // 4}X} is not a BCD number"
 
 
 # --- as people write them -------------------------------------------------------------------------

@@ -159,7 +159,7 @@ def snapshot(number: int = 0, step_s: int = 1, *, check_it: bool = True, **other
         "requests": 4,
         "values": values,
         "elements": elements,
-        "errors": {"oil temperature": "7FC00000 is no number as f32"} if broken else {},
+        "errors": {"oil temperature": "7FC00000 is not a number as f32"} if broken else {},
     } | other
     if check_it:  # it takes longer than all else
         check(document, "snapshot")

@@ -201,7 +201,7 @@ def test_a_series() -> None:
     assert facts(page)["Mode at the end"].text == "STOP"
     assert "Ended: interrupted." in page.first("header").text
     named = texts(page, "What was not read")
-    assert [row[2:] for row in named].count(["oil temperature", "2", "7FC00000 is no number as f32"]) == 6
+    assert [row[2:] for row in named].count(["oil temperature", "2", "7FC00000 is not a number as f32"]) == 6
     lost = ["2026-11-22 03:01:00 UTC", "2026-11-22 03:01:03 UTC", "all", "4"]
     assert [*lost, "no answer from station 1 in 4 tries of 0.5 s"] in named
     assert texts(page, "Hex values: first values, then changes") == [

@@ -27,7 +27,7 @@ PAGE = b"".join(b"%02X" % (byte % 256) for byte in range(128))
 PAGE_SUM = b"%02X" % (sum(b"\x02014F0" + PAGE) % 256)
 STATUS = b"\x0201530210102313380010001000064006407D203E800001F880C0001000100" + b"00" * 36 + b"A2\x03"
 
-BROKE_OFF = "a frame broke off and another began"
+BROKE_OFF = "an incomplete frame, then another beginning"
 
 CASES = [
     Case(

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     metavar="FILE",
     help="A backup of this PLC: a page that is as in it is read once. Default: FILE that --force replaces.",
 )
-@click.option("--any-header", is_flag=True, help="Keep an image whose header does not hold, marked as such.")
+@click.option("--any-header", is_flag=True, help="Keep an image with an invalid header, and mark it.")
 @click.option("--raw", type=PATH, metavar="FILE.bin", help="Also write the bare pages.")
 @connection_options
 def backup_command(

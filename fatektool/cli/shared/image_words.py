@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 def warn_of_image(program: Program, voice: Voice) -> None:
     """Say what does not hold of an image, what is odd, and what the PLC did not give."""
     for fault in program.header_faults:
-        voice.warn(f"the program's header does not hold: {fault}")
+        voice.warn(f"invalid header of the program: {fault}")
     for odd in program.header.odd:
         voice.warn(odd)
     refused = refused_pages(program)

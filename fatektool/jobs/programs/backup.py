@@ -59,14 +59,14 @@ def backup(
     Args:
         plc: the PLC; it may run.
         single_pass: read once, and compare with nothing.
-        any_header: keep an image whose header does not hold; it is marked.
+        any_header: keep an image with an invalid header; it is marked.
         known: what is on file of this PLC: a page that is as on file needs no second reading.
         progress: told of each page.
 
     Raises:
         LineError: a page found no answer, or the line has too many errors.
         PlcRefused: the PLC does not give its program away.
-        DataError: the header does not hold, or two passes differ.
+        DataError: an invalid header, or two passes differ.
     """
 
     def check(reading: ProgramReading) -> None:

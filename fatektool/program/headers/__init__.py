@@ -1,1 +1,1 @@
-"""The header of a program image: which family of PLC made it, in which byte order, and whether it holds."""
+"""The header of a program image: the PLC family, the byte order, and whether it is valid."""

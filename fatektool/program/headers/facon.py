@@ -4,7 +4,7 @@
 
     page 0   'F' · 'B' or 'M' · digit · digit · ladder size high, low · FF to the end
 
-The ladder's pages follow: as many as its size asks for.
+The pages of the ladder follow, as many as its size needs.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ def is_facon(page: bytes) -> bool:
 
 
 def facon_header(page: bytes, byte_order: str, ladder_words: int) -> Header:
-    """Read page 0 of this family.
+    """Parse page 0 of this family.
 
     Args:
         page: 128 bytes, in the paper's order.
-        byte_order: in which they came.
-        ladder_words: the ladder size that the PLC says it has (53).
+        byte_order: of the image.
+        ladder_words: the ladder size that the PLC reports (53).
     """
     size = int.from_bytes(page[4:6], "big")
     return Header(
@@ -43,11 +43,11 @@ def facon_header(page: bytes, byte_order: str, ladder_words: int) -> Header:
 
 
 def foreign_header(page: bytes, ladder_words: int) -> Header:
-    """Page 0 of no family: what does not hold, measured by the paper.
+    """Page 0 of an unknown family: its faults, compared with the paper.
 
     Args:
         page: 128 bytes.
-        ladder_words: the ladder size that the PLC says it has (53).
+        ladder_words: the ladder size that the PLC reports (53).
     """
     size = int.from_bytes(page[4:6], "big")
     faults = (*signature_faults(page), *size_faults(size, ladder_words))
@@ -55,7 +55,7 @@ def foreign_header(page: bytes, ladder_words: int) -> Header:
 
 
 def signature_faults(page: bytes) -> tuple[str, ...]:
-    """What is wrong with the first four bytes."""
+    """The faults of the first four bytes."""
     first, second, *digits = page[:4]
     faults = []
     if first != ord("F"):
@@ -69,7 +69,7 @@ def signature_faults(page: bytes) -> tuple[str, ...]:
 
 
 def size_faults(size: int, ladder_words: int) -> tuple[str, ...]:
-    """What is wrong with the ladder size, for a PLC of this one."""
+    """The faults of the ladder size, for a PLC with this size."""
     if size == ladder_words:
         return ()
     expected = f"expected the ladder size {ladder_words} ({ladder_words:04X})"

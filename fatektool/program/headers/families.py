@@ -1,4 +1,4 @@
-"""Which family an image is of: its signature says, in one byte order or the other."""
+"""The family of an image, by its signature in one byte order or the other."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 
 
 def read_header(pages: Sequence[bytes], ladder_words: int) -> Header:
-    """Read the header of an image. Never raises: what does not hold is named in ``faults``.
+    """Parse the header of an image. Never raises: the faults are in ``faults``.
 
     Args:
         pages: one or more, 128 bytes each.
-        ladder_words: the ladder size that the PLC says it has (53).
+        ladder_words: the ladder size that the PLC reports (53).
     """
     for byte_order, page in ((AS_PAPER, pages[0]), (SWAPPED, swapped(pages[0]))):
         if is_fbs(page):
@@ -34,7 +34,7 @@ def read_header(pages: Sequence[bytes], ladder_words: int) -> Header:
 
 
 def short_document(page: bytes, ladder_words: int) -> dict[str, Any]:
-    """The header as backup files had it before there were families: page 0 measured by the FACON paper."""
+    """The header of older backup files, without families: page 0 compared with the FACON paper."""
     size = int.from_bytes(page[4:6], "big")
     return {
         "valid": not signature_faults(page) and not size_faults(size, ladder_words),
@@ -44,15 +44,15 @@ def short_document(page: bytes, ladder_words: int) -> dict[str, Any]:
 
 
 def fewest_pages(pages: Sequence[bytes], ladder_words: int, most: int) -> int:
-    """How many pages are a whole program where the PLC refuses all that follow.
+    """The pages of a complete program, if the PLC refuses all further pages.
 
-    All that the header announces; or all but the very last, as a PLC whose ladder size counts the header page
-    has that one less.
+    All pages that the header announces; or one less, because in some PLCs the ladder size includes the header
+    page.
 
     Args:
         pages: those that were read.
-        ladder_words: the ladder size that the PLC says it has (53).
-        most: how many pages that size asks for.
+        ladder_words: the ladder size that the PLC reports (53).
+        most: the number of pages for that size.
     """
     if not pages:
         return most

@@ -9,13 +9,13 @@
          103      sum of the first words of the ROR area at byte A800; FFFF if there are none
          130      capacity, in words of code          131   n, words of code in use
          132      capacity - 1 - n                    133   0200H, the byte address where code begins
-         134      0200H + 2(m + 1), behind the m words of the main units
-         135      0200H + 2(n + 1), behind all code   138   byte address of the label table
+         134      0200H + 2(m + 1), after the m words of the main units
+         135      0200H + 2(n + 1), after all code    138   byte address of the label table
          239      number of ROR words                 254   55 AA
          256      code: main units, one word FFFF, sub units, FFFF
 
-Sums are modulo 65536. No paper describes this: it was read from images in project files, of 15 models (see
-docs/program-images.md). How such an image comes over the line is not known, so either byte order is taken.
+Sums are modulo 65536. No paper describes this: it was found in images in project files, of 15 models (see
+docs/program-images.md). The byte order of such an image on the line is not known, so both are accepted.
 """
 
 from __future__ import annotations
@@ -42,17 +42,17 @@ _MARK: Final = 0xAA55
 
 
 def is_fbs(page: bytes) -> bool:
-    """True if page 0 begins as this family's do."""
+    """True if page 0 has the signature of this family."""
     return _START.match(page) is not None
 
 
 def fbs_header(pages: Sequence[bytes], first: bytes, byte_order: str) -> Header:
-    """Read the header of an image of this family.
+    """Parse the header of an image of this family.
 
     Args:
-        pages: the image as it came, 128 bytes each.
+        pages: the image as read, 128 bytes each.
         first: page 0 in the order of the paper.
-        byte_order: in which they came.
+        byte_order: of the image.
     """
     signature = printable(first[:_SIGNATURE_BYTES])
     filled = first[_SIGNATURE_BYTES:] == b"\xff" * (PAGE_BYTES - _SIGNATURE_BYTES)
@@ -86,7 +86,7 @@ def fbs_header(pages: Sequence[bytes], first: bytes, byte_order: str) -> Header:
 
 
 def _faults(words: tuple[int, ...]) -> list[str]:
-    """What does not agree among the words 130 to 135 and 254."""
+    """The contradictions between the words 130 to 135, and 254."""
     capacity, used, _, begin, main_end, end = words[130:136]
     faults = []
 
@@ -98,10 +98,10 @@ def _faults(words: tuple[int, ...]) -> list[str]:
         faults.append(f"word 131: expected less code than the capacity of {capacity} words, got {used}")
     expect(132, "capacity less code in use,", (capacity - 1 - used) & 0xFFFF)
     expect(133, "the address of code,", _CODE_ADDRESS)
-    expect(135, "the address behind all code,", (_CODE_ADDRESS + 2 * (used + 1)) & 0xFFFF)
+    expect(135, "the address after all code,", (_CODE_ADDRESS + 2 * (used + 1)) & 0xFFFF)
     if not begin < main_end <= end or main_end % 2:
         faults.append(
-            f"word 134: expected an even address of {begin + 2:04X} to {end:04X} behind the main units, "
+            f"word 134: expected an even address of {begin + 2:04X} to {end:04X} after the main units, "
             f"got {main_end:04X}"
         )
     expect(254, "the mark", _MARK)

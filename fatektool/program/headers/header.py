@@ -1,11 +1,11 @@
-"""What a program's header says, whatever its family; JSON's ``header`` object.
+"""The header of a program, of any family; the ``header`` object in JSON.
 
 ::
 
-    family   signature   byte order            says
+    family   signature   byte order            contents
     facon    FB30        as paper or swapped   ladder size
     fbs      FBS40003    as paper or swapped   code capacity, code in use, four sums
-    -        FB?? or -   -                     nothing that holds
+    -        FB?? or -   -                     nothing valid
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ class Sum:
     """A checksum of 16 bits.
 
     Attributes:
-        stored: as the header has it.
-        computed: of the words themselves; None if they are not in the image.
+        stored: as in the header.
+        computed: from the words; None if they are not in the image.
     """
 
     stored: int
@@ -35,29 +35,29 @@ class Sum:
 
     @property
     def valid(self) -> bool | None:
-        """Whether the two are equal; None where nothing can be computed."""
+        """Whether the two are equal; None if it cannot be computed."""
         return None if self.computed is None else self.stored == self.computed
 
     def document(self) -> dict[str, Any]:
-        """The sum as JSON has it."""
+        """The sum for JSON."""
         computed = None if self.computed is None else f"{self.computed:04X}"
         return {"stored": f"{self.stored:04X}", "computed": computed, "valid": self.valid}
 
 
 @dataclass(frozen=True, slots=True)
 class Header:
-    """What an image's first pages say of the program.
+    """The contents of an image's first pages.
 
     Attributes:
-        family: ``facon`` or ``fbs``; None for a signature of neither.
-        signature: the characters that the family begins with (``FB30``, ``FBS40003``); of no family the first
-            four, None if they are not printable ASCII.
-        byte_order: ``as paper`` if the signature reads in the order of the bytes, ``swapped`` if the two
-            bytes of each word are exchanged; None for no family.
-        ladder_words: the ladder size that it names, in words; None in the fbs family, which names none.
-        faults: what does not hold, in words; empty for a header that holds.
-        filled: True if the rest of page 0 is FF, as the family has it.
-        announced_pages: how many pages hold all that it announces; None for no family.
+        family: ``facon`` or ``fbs``; None for another signature.
+        signature: the first characters (``FB30``, ``FBS40003``); without a family the first four, None if
+            they are not printable ASCII.
+        byte_order: ``as paper`` if the signature is in the order of the bytes, ``swapped`` if the two bytes
+            of each word are swapped; None without a family.
+        ladder_words: the ladder size in it, in words; None in the fbs family, which has none.
+        faults: what is wrong; empty for a valid header.
+        filled: True if the rest of page 0 is FF, as usual in the family.
+        announced_pages: the number of pages with all that it announces; None without a family.
         code_words: code in use, in words (fbs).
         capacity_words: space for code, in words (fbs).
         checksum: of the code (fbs).
@@ -78,17 +78,17 @@ class Header:
 
     @property
     def valid(self) -> bool:
-        """True for a header that holds; its checksums may be wrong."""
+        """True for a valid header; its checksums may be wrong."""
         return not self.faults
 
     @property
     def code_page(self) -> int:
-        """The page that code begins with."""
+        """The page with the beginning of the code."""
         return 4 if self.family == FBS else 1
 
     @property
     def odd(self) -> tuple[str, ...]:
-        """What is odd about a header that holds: a reason to look, none to refuse the image."""
+        """What is unusual in a valid header: a reason for a warning, but not to refuse the image."""
         found = []
         if not self.filled and self.family is not None:
             first, source = (6, "in the FACON paper") if self.family == FACON else (8, "in other images")
@@ -100,7 +100,7 @@ class Header:
         return tuple(found)
 
     def document(self) -> dict[str, Any]:
-        """The header as JSON has it."""
+        """The header for JSON."""
         return {
             "valid": self.valid,
             "family": self.family,
@@ -131,7 +131,7 @@ def _wrong(name: str, found: Sum) -> list[str]:
 
 
 def swapped(page: bytes) -> bytes:
-    """A page with the two bytes of each word exchanged."""
+    """A page with the two bytes of each word swapped."""
     turned = bytearray(page)
     turned[::2], turned[1::2] = page[1::2], page[::2]
     return bytes(turned)

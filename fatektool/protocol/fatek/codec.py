@@ -1,7 +1,7 @@
-"""What FACON and the M-series have in common as codecs: all but the form of a frame.
+"""The common part of the codecs of FACON and the M-series: all except the form of a frame.
 
-The data of an answer begins with the error, 0 for none; any other is all there is. 4E differs: it answers the
-very data that it was sent, without an error before it.
+The data of an answer begins with the error, 0 for none; after another error there is no more data. 4E
+differs: its answer is the data of the request, without an error before it.
 """
 
 from __future__ import annotations
@@ -38,12 +38,12 @@ class DataFields:
     """The data fields of one protocol.
 
     Args:
-        notation: how pieces are written.
-        rows: how each command is written; there are no others.
-        refusal: the exception for an error code, a command's code, and what was asked in words.
-        paper: which paper lists the commands, for messages.
-        error_optional: commands whose good answers may lack the error.
-        any_size: commands whose good answers may have any number of bytes.
+        notation: the format of the parts.
+        rows: the format of each command; there are no others.
+        refusal: the exception for an error code, a command's code, and the request as text.
+        paper: the paper with the commands, for messages.
+        error_optional: commands whose valid answers may have no error code.
+        any_size: commands whose valid answers may have any number of bytes.
     """
 
     def __init__(
@@ -72,12 +72,12 @@ class DataFields:
         """The data field of a request of one of ``rows``.
 
         Raises:
-            UsageError: a run that is too long, or an element that would be taken for another.
+            UsageError: a run that is too long, or an element that would be read as another.
         """
         return self.rows[request.command].request(self.notation, request)
 
     def parse_request(self, command: int, data: bytes) -> Request[object]:
-        """The request that a data field holds.
+        """The request in a data field.
 
         Raises:
             FrameError: an unknown command, or data that no request of it has.
@@ -91,15 +91,15 @@ class DataFields:
             raise FrameError(error.message, raw=data) from error
 
     def answer_size(self, request: Request[A]) -> int:
-        """How long the data of the good answer is, with the error; the likely length if it varies."""
+        """The length of a valid answer's data, with the error; the usual length if it varies."""
         return 1 + self.rows[request.command].size(self.notation, request)
 
     def parse_answer(self, request: Request[A], data: bytes) -> A:
-        """What an answer's data field says to this request.
+        """The answer to this request in a data field.
 
         Raises:
             PlcRefused: an error code.
-            FrameError: no answer to this request, by length or content.
+            FrameError: not an answer to this request, by length or content.
         """
         notation = self.notation
         command = request.command
@@ -113,7 +113,7 @@ class DataFields:
         return answer
 
     def _values(self, request: Request[A], data: bytes, size: int) -> bytes:
-        """The values in an answer that is not just what was expected, if they are there all the same."""
+        """The values in an answer with another length than expected, if they are complete."""
         notation = self.notation
         command = request.command
         loopback = command == Command.LOOPBACK
@@ -145,15 +145,15 @@ def _asked(request: Request[Any]) -> str:
 
 
 class FatekCodec(ABC):
-    """A ``Codec``; what a frame looks like is FACON's or the M-series' own.
+    """A ``Codec``; FACON and the M-series add the form of a frame.
 
     Args:
         request_frame: station, command and data as a frame that asks.
         answer_frame: the same as a frame that answers.
 
     Attributes:
-        data: how data fields are written.
-        framing_bytes: how many bytes a frame has beside its data.
+        data: the format of data fields.
+        framing_bytes: the bytes of a frame without its data.
     """
 
     name: ClassVar[str]
@@ -181,7 +181,7 @@ class FatekCodec(ABC):
 
     @property
     def same_form(self) -> bool:
-        """True if nothing in a frame says whether it asks or answers."""
+        """True if requests and answers have the same form."""
         return self.request_frame == self.answer_frame
 
     @abstractmethod
@@ -190,15 +190,15 @@ class FatekCodec(ABC):
 
     @abstractmethod
     def checksum(self, data: bytes) -> bytes:
-        """The checksum of what it covers."""
+        """The checksum of the bytes that it covers."""
 
     @abstractmethod
     def good_answer(self, request: Request[A], asked: bytes, raw: bytes) -> A:
-        """What a good answer says, read without a decoder."""
+        """The contents of a valid answer, parsed without a decoder."""
 
     @abstractmethod
     def error_text(self, code: int) -> str:
-        """An error code in words."""
+        """The meaning of an error code."""
 
     @abstractmethod
     def echo_may_pass(self, request: Request[A]) -> bool:
@@ -218,11 +218,11 @@ class FatekCodec(ABC):
         return self.request_frame(station, command, rows[command].request(self.data.notation, request))
 
     def parse_answer(self, request: Request[A], frame: Frame) -> A:
-        """What a frame answers to this request."""
+        """The answer to this request in a frame."""
         return self.data.parse_answer(request, frame.data)
 
     def encode_answer(self, station: int, request: Request[A], answer: A, number: int = 0) -> bytes:
-        """The frame in which a PLC gives this answer."""
+        """The frame of a PLC with this answer."""
         del number
         return self.answer_frame(station, request.command, self.data.answer_data(request, answer))
 
@@ -245,27 +245,27 @@ class FatekCodec(ABC):
         return self.answer_frame(station, command, self.data.notation.digit(code))
 
     def request_bytes(self, request: Request[A]) -> int:
-        """Length of the frame that asks this, in bytes."""
+        """Length of the request's frame, in bytes."""
         return self.framing_bytes + len(self.data.request_data(request))
 
     def answer_bytes(self, request: Request[A]) -> int:
-        """Length of the frame that answers this request, in bytes; of 53 that of FACON's 64 bytes."""
+        """Length of the answer's frame, in bytes; for 53 with FACON's 64 bytes."""
         return self.framing_bytes + self.data.answer_size(request)
 
     def neighbourhood(self, element: Element, *, writes: bool) -> int:  # noqa: ARG002  # the interface's
-        """All elements have their place."""
+        """0: all elements can be in a run."""
         return 0
 
     def most(self, symbol: str, *, writes: bool) -> int:  # noqa: ARG002  # the same both ways
-        """How many elements of a kind one run holds."""
+        """The most elements of a kind in one run."""
         return run_limit(KINDS[symbol])
 
     def mixed_words(self, *, writes: bool) -> int:
-        """How many words one mixed request holds."""
+        """The most words in one mixed request."""
         return MAX_MIXED_WRITE_WORDS if writes else MAX_READ_WORDS
 
     def shape(self, request: Request[Any]) -> bytes:  # noqa: ARG002  # the interface's
-        """Nothing: a fence is known by its nonce."""
+        """Empty: the nonce identifies a fence."""
         return b""
 
     def fence(self, nonce: bytes, asked: Collection[bytes] | None) -> Request[Any]:  # noqa: ARG002  # the interface's

@@ -1,8 +1,8 @@
-"""FACON and M-series frames explained: every byte belongs to a field, and every field says what it means.
+"""Explanations of FACON and M-series frames: every byte belongs to a field with a meaning.
 
-An answer does not say what was asked, so the request before it, if there is one, names its values. An
-M-series frame says whether it asks or answers; of a FACON frame the direction in a trace says it, else what
-its data can be read as.
+An answer does not contain its request, so its values are named by the request before it, if there is one. An
+M-series frame shows whether it is a request or an answer; for a FACON frame this is known from the direction
+in a trace, else from the form of its data.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ if TYPE_CHECKING:
 
 _SAYS_LITTLE: Final = "data that no paper describes"
 _STATIONS: Final = {
-    0x00: "all (broadcast), no PLC answers",
+    0x00: "broadcast to all PLCs, none answers",
     0xFF: "255, any PLC, or an Ethernet module",
 }
 _PIECE: Final = 1 << 15
-"""What a decoder is fed at once: it keeps no more than 64 KiB, and a record of a trace may hold more."""
+"""The bytes given to a decoder at once: it keeps at most 64 KiB, and a record of a trace may have more."""
 
 
 class FatekExplainer(ABC):
-    """Explains a conversation, piece by piece, in the order it was sent.
+    """Explains frames, piece by piece, in the order in which they were sent.
 
     Attributes:
-        form: what a frame looks like, in words.
-        binary: True if its bytes are better shown as hex than as characters.
-        cut_off: what is said of bytes at the end that began a frame.
+        form: the form of a frame, as text.
+        binary: True if its bytes should be shown as hex, not as characters.
+        cut_off: the message for an incomplete frame at the end.
     """
 
     form: ClassVar[str]
@@ -49,11 +49,11 @@ class FatekExplainer(ABC):
         self._last: dict[tuple[int, int], Request[Any]] = {}
 
     def explain(self, data: bytes, role: FrameRole = FrameRole.EITHER) -> Iterator[Explanation]:
-        """Explain all frames in a piece of the conversation, and the bytes that are none.
+        """Explain all frames in a piece of the trace, and the bytes outside frames.
 
         Args:
             data: the bytes.
-            role: REQUEST or ANSWER if the direction is known; where a frame itself says it, that counts.
+            role: REQUEST or ANSWER if the direction is known; what a frame itself shows has priority.
         """
         decoder = self.codec.decoder()
         for at in range(0, len(data), _PIECE):
@@ -67,11 +67,11 @@ class FatekExplainer(ABC):
 
     @abstractmethod
     def role_of(self, raw: bytes, role: FrameRole) -> FrameRole:
-        """What a frame says that it is; else what is known."""
+        """The role that the frame itself shows; else ``role``."""
 
     @abstractmethod
     def place(self, raw: bytes) -> tuple[int, int, bytes]:
-        """Station, command and data of a frame that is whole in form."""
+        """Station, command and data of a frame with a complete form."""
 
     @abstractmethod
     def around(
@@ -91,7 +91,7 @@ class FatekExplainer(ABC):
             yield self._frame(frame.raw, role, None)
 
     def _frame(self, raw: bytes, role: FrameRole, damage: FrameError | None) -> Explanation:
-        """Explain a frame that is whole in form; a damaged one says nothing about the conversation."""
+        """Explain a frame with a complete form; a damaged one does not change the role of others."""
         station, command, data = self.place(raw)
         role, fields, fault, request = self._data(station, command, data, self.role_of(raw, role))
         if damage is not None:
@@ -120,10 +120,10 @@ class FatekExplainer(ABC):
     def _data(
         self, station: int, command: int, data: bytes, role: FrameRole
     ) -> tuple[FrameRole, tuple[Field, ...], str | None, Request[Any] | None]:
-        """Read the data field as a request, as an answer, or as what it can be.
+        """Parse the data field as a request, as an answer, or as either.
 
         Returns:
-            What it is, its fields, what is wrong with it, and the request if it is one.
+            The role, the fields, what is wrong, and the request if it is one.
         """
         asked = self._last.get((station, command))
         fault = None
@@ -150,7 +150,7 @@ class FatekExplainer(ABC):
         return role, (Field("data", data, _SAYS_LITTLE),) if data else (), fault, None
 
     def _is_echo(self, asked: Request[Any], data: bytes) -> bool:
-        """True for what a two-wire line gives back, where requests and answers have the same form."""
+        """True for the echo of a two-wire line, if requests and answers have the same form."""
         return self.codec.same_form and self.codec.data.request_data(asked) == data
 
 

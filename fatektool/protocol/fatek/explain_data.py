@@ -1,6 +1,6 @@
-"""The data fields of FACON and M-series requests and answers, divided and explained.
+"""Explanations of the data fields of FACON and M-series requests and answers.
 
-A ``Cutter`` takes a data field apart from the left, by the notation that it is written in.
+A ``Cutter`` divides a data field from the left, by its notation.
 """
 
 from __future__ import annotations
@@ -47,16 +47,16 @@ _ACKNOWLEDGED: Final = {
     Command.WRITE_MIXED,
     Command.WRITE_PAGE,
 }
-"""The commands whose good answer is the error character or byte alone."""
+"""The commands whose valid answer is only the error character or byte."""
 
 _OF_BITS: Final = {Command.READ_DISABLED, Command.READ_DISCRETES}
 
 
 class Cutter:
-    """Takes a data field apart from the left.
+    """Divides a data field from the left.
 
     Args:
-        notation: how the field is written.
+        notation: of the field.
         data: the field.
     """
 
@@ -68,7 +68,7 @@ class Cutter:
 
     @property
     def rest(self) -> bytes:
-        """What is not yet cut."""
+        """The bytes that are not yet divided."""
         return self.data[self.at :]
 
     def cut(self, size: int, name: str, meaning: str) -> None:
@@ -85,23 +85,23 @@ class Cutter:
         self.cut(len(self.rest), name, meaning)
 
     def element(self, element: Element, meaning: str = "") -> None:
-        """Cut an element off."""
+        """Make an element a field."""
         self.cut(self.notation.element_size(element), "element", meaning or f"{element}")
 
     def value(self, element: Element, meaning: str) -> None:
-        """Cut an element's value off."""
+        """Make an element's value a field."""
         self.cut(self.notation.value_sizes[element.kind.bits], f"{element}", meaning)
 
     def page(self, data: bytes) -> None:
-        """Cut a page of the program off."""
+        """Make a page of the program a field."""
         first = data[:8].hex(" ", 2).upper()
         self.octets(len(data), "page", f"{len(data) // 2} words, first {first} …")
 
     def read_values(self, command: int, elements: Iterable[Element]) -> None:
-        """Cut the values of a read off, each beside its element.
+        """Make the values of a read fields, each with its element.
 
         Raises:
-            FrameError: one of them is no value.
+            FrameError: one of them is not a value.
         """
         for element in elements:
             size = self.notation.value_sizes[element.kind.bits]
@@ -115,7 +115,7 @@ class Cutter:
 def request_fields(  # noqa: C901  # a case a command
     codec: FatekCodec, request: Request[Any], data: bytes
 ) -> tuple[Field, ...]:
-    """The data field of a request, divided."""
+    """The data field of a request, as fields."""
     cutter = Cutter(codec.data.notation, data)
     match request:
         case RunStop(run):
@@ -153,7 +153,7 @@ def request_fields(  # noqa: C901  # a case a command
 def answer_fields(
     codec: FatekCodec, command: int, data: bytes, asked: Request[Any] | None
 ) -> tuple[Field, ...]:
-    """The data field of an answer, divided.
+    """The data field of an answer, as fields.
 
     Args:
         codec: FACON's or the M-series'.
@@ -172,7 +172,7 @@ def answer_fields(
     if len(data) == 1 and data != notation.no_error:
         code = notation.error_code(data)
         if code is None:
-            raise FrameError(f"the {notation.error_name} is no hex digit", raw=data)
+            raise FrameError(f"the {notation.error_name} is not a hex digit", raw=data)
         cutter.cut(1, "error", f"REFUSED: {codec.error_text(code)}")
         return tuple(cutter.fields)
     row = codec.data.rows.get(command)
@@ -180,18 +180,18 @@ def answer_fields(
         raise FrameError(f"command {command:02X} is not in the paper", raw=data)
     if not (command in codec.data.error_optional and len(data) == row.size(notation, None)):
         if not data.startswith(notation.no_error):
-            raise FrameError(f"an answer begins with its {notation.error_name}", raw=data)
+            raise FrameError(f"expected the {notation.error_name} first", raw=data)
         cutter.cut(1, "error", "none")
     _values(cutter, command, row, asked)
     return tuple(cutter.fields)
 
 
 def _values(cutter: Cutter, command: int, row: CommandRow, asked: Request[Any] | None) -> None:
-    """What follows the error in a good answer."""
+    """The data after the error in a valid answer."""
     rest = cutter.rest
     if command in _ACKNOWLEDGED:
         if rest:
-            raise FrameError("an acknowledgement has no data", raw=rest)
+            raise FrameError("expected no data in an acknowledgement", raw=rest)
     elif command in {Command.BRIEF_STATUS, Command.DETAILED_STATUS}:
         _status(cutter, row.parse_answer(cutter.notation, None, rest))
     elif command == Command.READ_PAGE:
@@ -204,7 +204,7 @@ def _values(cutter: Cutter, command: int, row: CommandRow, asked: Request[Any] |
 
 
 def _read(cutter: Cutter, command: int, elements: list[Element]) -> None:
-    """The values of a read; ``elements`` is empty if it is not known what was asked."""
+    """The values of a read; ``elements`` is empty if the request is not known."""
     notation = cutter.notation
     word = notation.value_sizes[16]
     fewest = word if command == Command.READ_REGISTERS else 1
@@ -212,20 +212,20 @@ def _read(cutter: Cutter, command: int, elements: list[Element]) -> None:
     alphabet = notation.bit_alphabet if command in _OF_BITS else notation.value_alphabet
     rest = cutter.rest
     if not 0 < len(rest) <= most or len(rest) % fewest or rest.translate(None, alphabet):
-        raise FrameError("no answer to a read has such data", raw=rest)
+        raise FrameError("invalid data for the answer to a read", raw=rest)
     if not elements:
-        cutter.all("values", "of elements that the request names")
+        cutter.all("values", "of the elements in the request")
         return
     size = notation.values_size(elements)
     if len(rest) != size:
         raise FrameError(
-            f"expected {size} {notation.unit} of values, as was asked, got {len(rest)}", raw=rest
+            f"expected {size} {notation.unit} of values, as requested, got {len(rest)}", raw=rest
         )
     cutter.read_values(command, elements)
 
 
 def _loopback(cutter: Cutter) -> None:
-    """The data of a loopback, of a request as of its answer."""
+    """The data of a loopback, of a request or its answer."""
     cutter.all("test data", f"{len(cutter.data)} {cutter.notation.unit}")
 
 
@@ -262,7 +262,7 @@ def _detailed_status(cutter: Cutter, status: DetailedStatus) -> None:
 
 
 def _elements_of(asked: Request[Any] | None) -> list[Element]:
-    """The elements whose values answer a read; none if it is not known what was asked."""
+    """The elements of a read; none if the request is not known."""
     match asked:
         case ReadDisabled(first, count) | ReadDiscretes(first, count) | ReadRegisters(first, count):
             return [first.after(place) for place in range(count)]
@@ -272,7 +272,7 @@ def _elements_of(asked: Request[Any] | None) -> list[Element]:
 
 
 def _flag_words(flags: StatusFlags, *, m_series: bool = False) -> str:
-    """Status byte 1 in words."""
+    """Status byte 1 as text."""
     words = [name.replace("_", " ") for name in flags.__slots__[1:] if getattr(flags, name)]
     if m_series:
         words = ["memory card" if word == "rom pack" else word for word in words]
@@ -280,7 +280,7 @@ def _flag_words(flags: StatusFlags, *, m_series: bool = False) -> str:
 
 
 def _shown(element: Element, value: int) -> str:
-    """A value in words."""
+    """A value as text."""
     return ("on" if value else "off") if element.kind.bits == 1 else f"{value}"
 
 

@@ -1,7 +1,7 @@
-"""The data field of each command of FACON and the M-series, request and answer, both ways.
+"""The data field of each command of FACON and the M-series, request and answer, in both directions.
 
-One row a command, over a ``Notation``. FACON paper, section 4.2; M-series paper, section 2.5. The rows in
-which the two differ, those of the status and of the program, are in ``facon/data`` and ``mseries/data``.
+One row for each command, with a ``Notation``. FACON paper, section 4.2; M-series paper, section 2.5. The rows
+in which the two differ, status and program, are in ``facon/data`` and ``mseries/data``.
 """
 
 from __future__ import annotations
@@ -35,14 +35,14 @@ if TYPE_CHECKING:
 
 
 class CommandRow(NamedTuple):
-    """How one command is written. Sizes are those of the wire.
+    """The format of one command. Sizes are bytes on the wire.
 
     Attributes:
         request: the data field of a request.
         parse_request: the request of a data field.
-        size: of a good answer's data, without the error before it.
-        parse_answer: what a good answer says to this request.
-        answer: that, written again.
+        size: of a valid answer's data, without the error before it.
+        parse_answer: the answer to this request in the data of a valid answer.
+        answer: the data of an answer.
     """
 
     request: Callable[[Notation, Any], bytes]
@@ -53,15 +53,15 @@ class CommandRow(NamedTuple):
 
 
 def run_limit(kind: ElementKind) -> int:
-    """How many elements a run (43 to 47) holds: 32 of 32 bits, by FACON's rule."""
+    """The most elements in a run (43 to 47): 32 of 32 bits, by FACON's rule."""
     return MAX_DISCRETES if kind.bits == 1 else MAX_READ_WORDS // kind.words
 
 
 def require_run_limit(first: Element, count: int, command: Command) -> None:
-    """Check the length of a run; other requests have the same limits in every protocol.
+    """Check the length of a run; other requests have the same limits in all protocols.
 
     Raises:
-        UsageError: it is longer.
+        UsageError: it is too long.
     """
     limit = run_limit(first.kind)
     if count > limit:
@@ -73,14 +73,14 @@ def require_run_limit(first: Element, count: int, command: Command) -> None:
 def acknowledged(
     request: Callable[[Notation, Any], bytes], parse_request: Callable[[Notation, bytes], Request[Any]]
 ) -> CommandRow:
-    """A command whose answer is the error alone."""
+    """A command whose answer is only the error."""
     return CommandRow(
         request, parse_request, lambda _w, _r: 0, lambda _w, _r, _d: None, lambda _w, _r, _a: b""
     )
 
 
 def parse_empty(make: Callable[[], Request[Any]]) -> Callable[[Notation, bytes], Request[Any]]:
-    """Reads nothing, and makes a request of it."""
+    """A parser of empty data, which makes a request."""
 
     def parse(w: Notation, data: bytes) -> Request[Any]:
         w.nothing_after(data)
@@ -183,7 +183,7 @@ def _parse_write_mixed(w: Notation, data: bytes) -> WriteMixed:
         element, at = w.take_element(data, at)
         end = at + w.value_sizes[element.kind.bits]
         if end > len(data):
-            raise FrameError(f"the value of {element} is cut off", raw=data)
+            raise FrameError(f"the value of {element} is incomplete", raw=data)
         items.append((element, w.take_value(element, data[at:end])))
         at = end
     w.nothing_after(data[at:])
@@ -225,4 +225,4 @@ ROWS: Final[dict[int, CommandRow]] = {
         lambda _w, _r, data: bytes(data),
     ),
 }
-"""The commands that the two write alike; those of the status and of the program are not among them."""
+"""The commands with the same format in both; not status and program."""

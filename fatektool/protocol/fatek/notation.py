@@ -1,7 +1,7 @@
-"""How FACON and the M-series write the pieces of a data field: counts, elements, values.
+"""The notation of FACON and M-series data fields: counts, elements, values.
 
-The two write the same fields in the same order: FACON in characters, the M-series in bytes. A ``Notation`` is
-one of the two ways, and ``fields`` is the one table of all commands over it.
+Both have the same fields in the same order: FACON as characters, the M-series as bytes. A ``Notation`` is one
+of the two, and ``fields`` is the table of all commands for both.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
 
 
 class Notation(ABC):
-    """One way to write.
+    """One notation.
 
     Attributes:
-        unit: what the wire's bytes are called.
-        octet: how many of them one byte of content takes.
-        value_sizes: how many of them a value takes, by its bits.
-        no_error: before the values of a good answer.
-        error_name: what that place is called.
-        bit_alphabet: what discretes are written in.
-        value_alphabet: what all other values are written in.
+        unit: the name of the bytes on the wire.
+        octet: units of one byte of content.
+        value_sizes: units of a value, by its bits.
+        no_error: before the values of a valid answer.
+        error_name: the name of that field.
+        bit_alphabet: the valid units of discretes.
+        value_alphabet: the valid units of all other values.
     """
 
     unit: ClassVar[str]
@@ -40,7 +40,7 @@ class Notation(ABC):
     bit_alphabet: ClassVar[bytes]
     value_alphabet: ClassVar[bytes]
 
-    # --- what the two differ in ---------------------------------------------------------------------------
+    # --- different in the two -------------------------------------------------------------------------------
 
     @abstractmethod
     def octets(self, data: bytes) -> bytes:
@@ -51,7 +51,7 @@ class Notation(ABC):
         """Read bytes of content.
 
         Raises:
-            FrameError: they are none.
+            FrameError: they are invalid.
         """
 
     @abstractmethod
@@ -91,16 +91,16 @@ class Notation(ABC):
         """Write an element.
 
         Raises:
-            UsageError: the receiver would take it for another.
+            UsageError: the receiver would read another element.
         """
 
     @abstractmethod
     def element_size(self, element: Element) -> int:
-        """How long a written element is."""
+        """The size of an element, in units."""
 
     @abstractmethod
     def take_element(self, data: bytes, at: int) -> tuple[Element, int]:
-        """Read one element; give it and the place behind it.
+        """Parse one element; returns it and the place after it.
 
         Raises:
             FrameError: there is none.
@@ -108,13 +108,13 @@ class Notation(ABC):
 
     @abstractmethod
     def error_code(self, data: bytes) -> int | None:
-        """The error code that is all of an answer's data; None if it is something else, or no error."""
+        """The error code, if the answer's data is only that; else, or without an error, None."""
 
     @abstractmethod
     def wrong_error(self, data: bytes) -> FrameError:
-        """For an answer of the right length that does not begin with ``no_error``."""
+        """The error for an answer of the right length that does not begin with ``no_error``."""
 
-    # --- what follows from that ---------------------------------------------------------------------------
+    # --- the same for both ----------------------------------------------------------------------------------
 
     def words(self, values: Sequence[int], bits: int) -> bytes:
         """Write unsigned values of 16 or 32 bits."""
@@ -151,11 +151,11 @@ class Notation(ABC):
         return tuple(values)
 
     def values_size(self, elements: Iterable[Element]) -> int:
-        """How long the values of these elements are."""
+        """The size of the values of these elements, in units."""
         return sum(self.value_sizes[element.kind.bits] for element in elements)
 
     def take_run(self, data: bytes, *, zero_is_256: bool) -> tuple[Element, int, bytes]:
-        """Read number and first element of a run; give element, number and the rest."""
+        """Parse number and first element of a run; returns element, number and the rest."""
         count = self.take_count(data)
         if not count and zero_is_256:
             count = MAX_DISCRETES
@@ -163,6 +163,6 @@ class Notation(ABC):
         return element, count, data[at:]
 
     def nothing_after(self, rest: bytes) -> None:
-        """Refuse what no field accounts for."""
+        """Refuse data after the last field."""
         if rest:
-            raise FrameError(f"{len(rest)} {self.unit} too many", raw=rest)
+            raise FrameError(f"{len(rest)} more {self.unit} than expected", raw=rest)

@@ -4,7 +4,7 @@
 
     : · station and PDU in hex digits · LRC(2 hex digits) · CR LF
 
-As STX in FACON, ``:`` is never inside a frame, so a second one begins a new frame.
+Like STX in FACON, ``:`` is never inside a frame, so a second one begins a new frame.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def _checksum(data: bytes) -> bytes:
 
 
 class AsciiDecoder(Delimited):
-    """Cuts ASCII frames out of a stream."""
+    """Splits a stream into ASCII frames."""
 
     begin = b":"
     end = b"\r\n"
@@ -47,15 +47,15 @@ class AsciiDecoder(Delimited):
 
 
 def parse_ascii(raw: bytes) -> Frame:
-    """Read one ASCII frame from ``:`` to CR LF.
+    """Parse one ASCII frame from ``:`` to CR LF.
 
     Raises:
-        FrameError: a wrong checksum (then ``checksum`` is True), or no frame.
+        FrameError: a wrong checksum (then ``checksum`` is True), or not a frame.
     """
     digits = raw[1:-2]
     if not MIN_ASCII <= len(raw) <= MAX_ASCII or len(digits) % 2 or digits.translate(None, _HEX_DIGITS):
         raise FrameError(
-            f"no frame: expected {MIN_ASCII} to {MAX_ASCII} bytes of capital hex digits in pairs, "
+            f"invalid frame: expected {MIN_ASCII} to {MAX_ASCII} bytes of capital hex digits in pairs, "
             f"got {counted(len(raw), 'byte')}",
             raw=raw,
         )

@@ -1,12 +1,12 @@
 """Modbus as a ``Codec``, in three framings: RTU and ASCII on serial lines, TCP.
 
-What is asked goes through a map, the standard one unless another is given: ``mapped``.
+Elements have references by a map, the standard one by default: ``mapped``.
 
-**Fences.** An RTU or ASCII answer does not name its question, and the paper lists no function that would send
-back what it was sent. But the answer to a read says how many bytes it has. So the fence is a read of a number
-of registers or coils that nothing asked since the last fence had: an answer of just that length is its own,
-and all that was asked before is in or lost. A map of a few registers has not as many lengths: then ``fence``
-gives None, and silence must do. A TCP answer repeats the number of its request, and needs no fence.
+**Fences.** An RTU or ASCII answer does not identify its request, and the paper has no function that returns
+the data of the request. But the answer to a read has a byte count. So the fence is a read of a number of
+registers or coils that no request since the last fence had: an answer with that length belongs to it, and all
+earlier answers were received or are lost. A map of a few registers has only a few lengths: then ``fence``
+returns None, and silence is used instead. A TCP answer repeats the number of its request, and needs no fence.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ A = TypeVar("A")
 
 @dataclass(frozen=True)
 class ModbusCodec:
-    """Modbus in one framing, over one map.
+    """Modbus in one framing, with one map.
 
     Attributes:
         framing: RTU, ASCII or TCP.
@@ -52,7 +52,7 @@ class ModbusCodec:
     last_error: Final[int] = 0xFF
 
     def mapped(self, modbus_map: ModbusMap) -> ModbusCodec:
-        """The same over another map."""
+        """The same with another map."""
         return replace(self, map=modbus_map)
 
     @property
@@ -72,7 +72,7 @@ class ModbusCodec:
 
     @property
     def stations(self) -> range:
-        """1 to 247; over TCP 0 to 255, of which 0 and 255 are the PLC at the address itself."""
+        """1 to 247; over TCP 0 to 255, where 0 and 255 are the PLC at the address itself."""
         return self.framing.stations
 
     @property
@@ -87,15 +87,15 @@ class ModbusCodec:
 
     @property
     def unique_fences(self) -> bool:
-        """False: what was asked before decides which lengths of answers are left."""
+        """False: the earlier requests decide which lengths of answers are left."""
         return False
 
     @property
     def probe(self) -> Request[Any]:
-        """One register, or one discrete where the map has no register."""
+        """One register, or one discrete if the map has no register."""
         stretch = min(self.map.stretches, key=lambda stretch: stretch.area.of_bits, default=None)
         if stretch is None:
-            raise UsageError("this Modbus map has nothing in it")
+            raise UsageError("this Modbus map is empty")
         first = Element(stretch.symbol, stretch.first)
         return ReadDiscretes(first, 1) if stretch.area.of_bits else ReadRegisters(first, 1)
 
@@ -104,7 +104,7 @@ class ModbusCodec:
         return self.framing.decoder()
 
     def code(self, request: Request[Any]) -> int:
-        """The Modbus function that asks this."""
+        """The Modbus function of this request."""
         return modbus_data.function_of(request, self.map)
 
     def encode(self, station: int, request: Request[A], number: int = 0) -> bytes:
@@ -114,21 +114,21 @@ class ModbusCodec:
         return self.framing.encode(station, modbus_data.request_pdu(request, self.map), number)
 
     def parse_answer(self, request: Request[A], frame: Frame) -> A:
-        """What a frame answers to this request."""
+        """The answer to this request in a frame."""
         return modbus_data.parse_answer(request, frame.data, self.map)
 
     def good_answer(self, request: Request[A], asked: bytes, raw: bytes) -> A:
-        """What a good answer says: its station, function and number are the request's."""
+        """The contents of a valid answer: its station, function and number are those of the request."""
         framing = self.framing
         decoder = framing.decoder()
         decoder.feed(raw)
         frame = decoder.next_frame()
         if frame is None or frame.raw != raw or framing.repeated(raw) != framing.repeated(asked):
-            raise FrameError("not the good answer", raw=raw)
+            raise FrameError("not the expected answer", raw=raw)
         return self.parse_answer(request, frame)
 
     def encode_answer(self, station: int, request: Request[A], answer: A, number: int = 0) -> bytes:
-        """The frame in which a PLC gives this answer."""
+        """The frame of a PLC with this answer."""
         return self.framing.encode(station, modbus_data.answer_pdu(request, answer, self.map), number)
 
     def encode_raw(
@@ -159,15 +159,15 @@ class ModbusCodec:
         return self.framing.checksum(data)
 
     def error_text(self, code: int) -> str:
-        """An exception in words."""
+        """The meaning of an exception."""
         return modbus_data.exception_text(code)
 
     def request_bytes(self, request: Request[A]) -> int:
-        """Length of the frame that asks this, in bytes."""
+        """Length of the request's frame, in bytes."""
         return self.framing.size(modbus_sizes.request_size(request))
 
     def answer_bytes(self, request: Request[A]) -> int:
-        """Length of the frame that answers this request, in bytes."""
+        """Length of the answer's frame, in bytes."""
         return self.framing.size(modbus_sizes.answer_size(request))
 
     def neighbourhood(self, element: Element, *, writes: bool) -> int:
@@ -175,15 +175,15 @@ class ModbusCodec:
         return self.map.stretch_of(element, writes=writes)
 
     def most(self, symbol: str, *, writes: bool) -> int:
-        """How many elements of a kind one request holds."""
+        """The most elements of a kind in one request."""
         return modbus_sizes.most(symbol, writes=writes)
 
     def mixed_words(self, *, writes: bool) -> int:  # noqa: ARG002  # the interface's
-        """0: a request is for neighbours."""
+        """0: a request is for consecutive elements."""
         return 0
 
     def echo_may_pass(self, request: Request[A]) -> bool:
-        """True if the request's own echo could be taken for its answer, as with 05 and 06 it always could."""
+        """True if the request's own echo could be taken for its answer, as always with 05 and 06."""
         try:
             modbus_data.parse_answer(request, modbus_data.request_pdu(request, self.map), self.map)
         except FatektoolError:
@@ -191,16 +191,16 @@ class ModbusCodec:
         return True
 
     def shape(self, request: Request[Any]) -> bytes:
-        """What is known of an answer beforehand: the function, and of a read the number of bytes."""
+        """What is known of an answer in advance: the function, and for a read the number of bytes."""
         size = 0 if request.writes else modbus_sizes.answer_size(request)
         return bytes([modbus_data.function_of(request, self.map), size])
 
     def fence(self, nonce: bytes, asked: Collection[bytes] | None) -> Request[Any] | None:
-        """A read whose answer has a length that no answer to what was asked has.
+        """A read whose answer has a length that no answer to an earlier request has.
 
         Args:
-            nonce: where to begin to look.
-            asked: the shapes of what was asked; None for anything: then no length is left.
+            nonce: where the search begins.
+            asked: the shapes of the earlier requests; None if not known: then no length is left.
         """
         if asked is None:
             return None

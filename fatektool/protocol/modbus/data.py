@@ -6,7 +6,7 @@
     WriteDiscretes    0F, or 05 for one            ControlDiscrete   05, set and reset only
     WriteRegisters    10, or 06 for one; of words of discretes 0F
 
-Of 32-bit counters a run is read over those between, see ``sizes``.
+A run of 32-bit counters includes those between, see ``sizes``.
 """
 
 from __future__ import annotations
@@ -39,23 +39,23 @@ MEANINGS: Final = {
     0x01: "illegal function",
     0x02: "illegal data address, not in the PLC's Modbus map",
     0x03: "illegal data value, or too many at once",
-    0x04: "the PLC could not do it",
-    0x05: "accepted, and not done yet",
+    0x04: "the PLC could not execute it",
+    0x05: "accepted, not completed yet",
     0x06: "the PLC is busy",
     0x08: "a parity error in the PLC's memory",
 }
-GATEWAY: Final = {0x0A: "it has no path to the PLC", 0x0B: "it asked the PLC, and got no answer"}
+GATEWAY: Final = {0x0A: "no path to the PLC", 0x0B: "no answer from the PLC"}
 _AT_THE_GATEWAY: Final = {
-    0x0A: "is this station in the gateway's table, and at the right port of it? Check --station too; a "
-    "gateway that has too much to do says the same",
-    0x0B: "behind the gateway: is the PLC on, its station right, are the speed and format of the gateway's "
-    "serial port those of the PLC? A PLC slower than the gateway's own time-out looks the same",
+    0x0A: "check that the gateway's table has this station, at the right port, and check --station; "
+    "an overloaded gateway reports the same",
+    0x0B: "check that the PLC is on, its station, and that the gateway's serial port has its speed and "
+    "format; a PLC slower than the gateway's own time-out has the same effect",
 }
 _NO_PATH: Final = 0x0A
 _ACCEPTED: Final = 0x05
 _BUSY: Final = (_ACCEPTED, 0x06)
 _NEXT: Final = {
-    0x01: "is it a FATEK PLC? Others have other functions",
+    0x01: "check that it is a FATEK PLC: others have other functions",
     0x02: "'fatektool modbus map' shows the standard map; a PLC with R3968 = A55AH needs --modbus-map",
 }
 _READS: Final = {
@@ -76,10 +76,10 @@ AREAS: Final = {function: area for area, function in _READS.items()} | {
 
 
 def function_of(request: Request[Any], modbus_map: ModbusMap) -> int:
-    """The function that asks this.
+    """The function of this request.
 
     Raises:
-        UsageError: it cannot be asked.
+        UsageError: Modbus has no such request.
     """
     if not request.writes:
         return _READS[modbus_map.place(first_of(request), count_of(request)).area]
@@ -93,7 +93,7 @@ def request_pdu(request: Request[Any], modbus_map: ModbusMap) -> bytes:
     """A request as a PDU.
 
     Raises:
-        UsageError: an element without a reference, too many of them, or a command that Modbus lacks.
+        UsageError: an element without a reference, too many of them, or a command that Modbus does not have.
     """
     first, count = first_of(request), count_of(request)
     limit = most(first.symbol, writes=request.writes)
@@ -131,13 +131,13 @@ def _written(request: Request[Any]) -> tuple[int, ...]:
 
 
 def parse_answer(request: Request[A], pdu: bytes, modbus_map: ModbusMap) -> A:
-    """What an answer says to this request.
+    """The answer to this request in a PDU.
 
     Raises:
         PlcRefused: an exception.
-        PlcBusy: an exception that is not for good.
-        GatewayTimeout: a gateway says that it got no answer.
-        FrameError: no answer to this request, by length or content.
+        PlcBusy: a temporary exception.
+        GatewayTimeout: a gateway reports that it got no answer.
+        FrameError: not an answer to this request, by length or content.
     """
     said = modbus_pdu.parse_answer(pdu)
     if said.exception:
@@ -162,7 +162,7 @@ def parse_answer(request: Request[A], pdu: bytes, modbus_map: ModbusMap) -> A:
 
 
 def answer_pdu(request: Request[A], answer: A, modbus_map: ModbusMap) -> bytes:
-    """The answer to a request as a PDU; what is read over between 32-bit counters is 0."""
+    """The answer to a request as a PDU; the registers between 32-bit counters are 0."""
     first = first_of(request)
     place = modbus_map.place(first, count_of(request), writes=request.writes)
     function = function_of(request, modbus_map)
@@ -184,14 +184,14 @@ def answer_pdu(request: Request[A], answer: A, modbus_map: ModbusMap) -> bytes:
 
 
 def exception_text(code: int) -> str:
-    """What an exception means, in words."""
+    """The meaning of an exception."""
     if code in GATEWAY:
-        return f"the gateway says: {GATEWAY[code]}"
+        return f"the gateway reports: {GATEWAY[code]}"
     return MEANINGS.get(code, "a code that Modbus does not list")
 
 
 def _check_echo(request: Request[Any], said: Pdu, offset: int, count: int, pdu: bytes) -> None:
-    """A write's answer repeats where it wrote, and what or how much."""
+    """A write's answer repeats the address, and the value or the count."""
     values = _written(request)
     same = (
         (tuple(map(int, said.bits)) or tuple(said.registers)) == values
@@ -203,7 +203,7 @@ def _check_echo(request: Request[Any], said: Pdu, offset: int, count: int, pdu: 
 
 
 def _joined(parts: Sequence[int], each: int) -> tuple[int, ...]:
-    """Bits or registers put together, so many to a value, the lowest first."""
+    """Bits or registers joined to values, a number of them for each, the lowest first."""
     width = 16 if each < 16 else 1
     return tuple(
         sum(int(part) << (place * width) for place, part in enumerate(parts[at : at + each]))

@@ -1,8 +1,8 @@
-"""Modbus frames explained: every byte belongs to a field, and every field says what it means.
+"""Explanations of Modbus frames: every byte belongs to a field with a meaning.
 
-Requests and answers look alike. Which one a frame is, the direction of a trace says; without it the form, and
-where that fits both, whether this was asked before. An answer to a read does not say where: the request
-before it, if there is one, names its values. Elements are those of the standard map.
+Requests and answers have similar forms. Which one a frame is, is known from the direction in a trace; else
+from the form; and if both are possible, from the requests before it. An answer to a read has no address: its
+values are named by the request before it, if there is one. Elements are those of the standard map.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
     from fatektool.protocol.modbus.framing import FramePart
 
 _PIECE: Final = 1 << 15
-"""What a decoder is fed at once: it keeps no more than 64 KiB, and a record of a trace may hold more."""
+"""The bytes given to a decoder at once: it keeps at most 64 KiB, and a record of a trace may have more."""
 
 
 class _Part(NamedTuple):
-    """A piece of a PDU: its name, how many bytes it takes, what it says."""
+    """A part of a PDU: its name, its length in bytes, its meaning."""
 
     name: str
     size: int
@@ -38,7 +38,7 @@ class _Part(NamedTuple):
 
 
 class ModbusExplainer:
-    """Explains a conversation in one framing, piece by piece, in the order it was sent."""
+    """Explains frames in one framing, piece by piece, in the order in which they were sent."""
 
     def __init__(self, codec: ModbusCodec) -> None:
         self._framing = codec.framing
@@ -47,7 +47,7 @@ class ModbusExplainer:
 
     @property
     def form(self) -> str:
-        """What a frame looks like, in words."""
+        """The form of a frame, as text."""
         return self._framing.form
 
     @property
@@ -56,7 +56,7 @@ class ModbusExplainer:
         return self._framing.octet == 1
 
     def explain(self, data: bytes, role: FrameRole = FrameRole.EITHER) -> Iterator[Explanation]:
-        """Explain all frames in a piece of the conversation, and the bytes that are none.
+        """Explain all frames in a piece of the trace, and the bytes outside frames.
 
         Args:
             data: the bytes.
@@ -85,7 +85,7 @@ class ModbusExplainer:
         key = (frame.station, frame.command, frame.number)
         role, said, fault = _understood(frame.data, role, asked=key in self._last)
         if said is None:
-            parts = [_Part("data", len(frame.data) - 1, "in no form of this function")]
+            parts = [_Part("data", len(frame.data) - 1, "in a form that this function does not have")]
         elif said.exception:
             self._last.pop(key, None)
             parts = [_Part("exception", 1, f"REFUSED: {exception_text(said.exception)}")]
@@ -122,18 +122,18 @@ class ModbusExplainer:
         yield from _around(self._framing.behind, frame.raw[at:])
 
     def _who(self, station: int) -> str:
-        """A station in words."""
+        """A station as text."""
         if station in self._framing.own_units:
             return f"{station}, the PLC at this address"
         if not station:
-            return "all (broadcast), no PLC answers"
+            return "broadcast to all PLCs, none answers"
         if station > LAST_STATION and self._framing.data_bits is not None:
             return f"{station}, reserved on serial lines"
         return f"{station}"
 
 
 def _around(parts: Iterable[FramePart], raw: bytes) -> Iterator[Field]:
-    """The fields before the station, or behind the PDU."""
+    """The fields before the station, or after the PDU."""
     at = 0
     for part in parts:
         content = raw[at : at + part.size]
@@ -142,7 +142,7 @@ def _around(parts: Iterable[FramePart], raw: bytes) -> Iterator[Field]:
 
 
 def _understood(pdu: bytes, role: FrameRole, *, asked: bool) -> tuple[FrameRole, Pdu | None, str | None]:
-    """What a PDU is and says, or what is wrong with it."""
+    """The role and contents of a PDU, or what is wrong with it."""
     found: dict[FrameRole, Pdu] = {}
     fault = None
     for kind, parse in (
@@ -196,7 +196,7 @@ def _one_written(said: Pdu) -> list[_Part]:
 
 
 def _values(said: Pdu, function: int, offset: int | None) -> Iterator[_Part]:
-    """Registers one by one, bits by the byte; without names if it is not known where they are."""
+    """Registers one by one, bits by the byte; without names if their address is not known."""
     for place, value in enumerate(said.registers):
         name = f"value {place + 1}" if offset is None else _named(function, offset + place)
         yield _Part(name, 2, f"{value}")

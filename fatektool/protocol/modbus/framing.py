@@ -1,4 +1,4 @@
-"""What RTU, ASCII and TCP differ in: how a station and a PDU become a frame, and what a frame looks like."""
+"""The differences between RTU, ASCII and TCP: encoding and form of a frame."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ MAX_PDU: Final = 253
 
 
 class FramePart(NamedTuple):
-    """A part of a frame before the station or behind the PDU, for who explains it.
+    """A part of a frame before the station or after the PDU, for explanations.
 
     Attributes:
-        name: the specification's word for it.
+        name: as in the specification.
         size: in bytes on the wire.
-        meaning: its bytes in words; of a frame whose checksum holds.
+        meaning: of its bytes, in a frame with a correct checksum.
     """
 
     name: str
@@ -34,20 +34,20 @@ class Framing:
 
     Attributes:
         name: of ``--protocol``.
-        form: what a frame looks like, in words.
+        form: the form of a frame, as text.
         encode: station, PDU and number as a frame.
         decoder: a new decoder.
         size: length of a frame around a PDU of so many bytes.
-        repeated: the bytes of a request that its good answer repeats: station, function, number.
+        repeated: the bytes of a request that a valid answer repeats: station, function, number.
         before: the parts before the station.
-        behind: the parts behind the PDU; none if there is no checksum.
+        behind: the parts after the PDU; none if there is no checksum.
         checksum: of station and PDU, as it is sent; None if there is none.
-        octet: bytes on the wire for one of station and PDU.
+        octet: bytes on the wire for one byte of station and PDU.
         data_bits: that a serial line needs; None if it is not used there.
-        tcp_port: unless one is named.
-        stations: that one PLC can be asked under.
+        tcp_port: the default.
+        stations: valid for one PLC.
         own_units: the stations that mean the PLC at the address itself.
-        numbers: how many requests can be told apart by the number that their answers repeat.
+        numbers: the count of different numbers that answers repeat; 1 if they have none.
         quiet_chars: the silence in characters before a frame.
     """
 
@@ -70,5 +70,5 @@ class Framing:
 
 
 def always(meaning: str) -> Callable[[bytes], str]:
-    """The meaning of a part that says the same in every frame."""
+    """The meaning of a part that is the same in every frame."""
     return lambda _: meaning

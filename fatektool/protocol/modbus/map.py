@@ -10,12 +10,13 @@
 A reference is written with five digits or six: 46012 and 406012 are the holding register at offset 6011, D11.
 What is sent is the offset, one less than the reference and without its first digit.
 
-C200 to C255 have 32 bits, two registers each: DRC200 is 409701 and 409702. Which of them is the low word the
-paper does not say; here it is the first, as in every 32-bit register of these PLCs. C0 to C199 have 16 bits.
+C200 to C255 have 32 bits, two registers each: DRC200 is 409701 and 409702. The paper does not say which of
+them is the low word; here it is the first, as in every 32-bit register of these PLCs. C0 to C199 have 16
+bits.
 
-With R3968 = A55AH, R3969 to R3971 lay a range of M over coils, and R3978 to R3980 one of R over holding
-registers, *instead* of the standard map: R3968 itself has no reference any more then, unless the range holds
-it. R3972 to R3974 lay M over discrete inputs and R3975 to R3977 R over input registers, whatever R3968 is
+With R3968 = A55AH, R3969 to R3971 map a range of M to coils, and R3978 to R3980 a range of R to holding
+registers, *instead* of the standard map: R3968 itself then has no reference, unless the range contains it.
+R3972 to R3974 map M to discrete inputs and R3975 to R3977 map R to input registers, with any value of R3968
 (FBs link paper, section 13.3).
 """
 
@@ -51,7 +52,7 @@ class ModbusArea(IntEnum):
 
     @property
     def words(self) -> str:
-        """In words."""
+        """As text."""
         return self.name.lower().replace("_", " ")
 
     @property
@@ -71,7 +72,7 @@ class Reference:
 
     Attributes:
         area: coil, discrete input, input register or holding register.
-        offset: as it is sent, 0 to 65535.
+        offset: as sent, 0 to 65535.
     """
 
     area: ModbusArea
@@ -79,22 +80,22 @@ class Reference:
 
     @classmethod
     def parse(cls, text: str) -> Reference:
-        """Read a reference of five digits or six.
+        """Parse a reference of five or six digits.
 
         Raises:
-            UsageError: it is none.
+            UsageError: it is not a reference.
         """
         match = _WRITTEN.fullmatch(text.strip())
         if match is None or not 1 <= int(match[2]) <= LAST_OFFSET + 1:
             raise UsageError(
-                f"{text!r} is no Modbus reference: expected 0, 1, 3 or 4 and then 0001 to 9999 or "
+                f"{text!r} is not a Modbus reference: expected 0, 1, 3 or 4, then 0001 to 9999 or "
                 f"00001 to 65536, such as 40001 or 400001"
             )
         return cls(ModbusArea(int(match[1])), int(match[2]) - 1)
 
     @property
     def five_digits(self) -> str | None:
-        """The short form; None past 9999."""
+        """The short form; None above 9999."""
         return f"{self.area:d}{self.offset + 1:04}" if self.offset < 9999 else None
 
     def __str__(self) -> str:
@@ -103,15 +104,15 @@ class Reference:
 
 @dataclass(frozen=True, slots=True)
 class MapStretch:
-    """Neighbours among the elements that are neighbours among the references too.
+    """Consecutive elements with consecutive references.
 
     Attributes:
-        area: where.
+        area: of the references.
         offset: of the first.
         symbol: of the elements.
-        first: the first one's address.
+        first: the address of the first.
         count: how many there are.
-        width: references that each takes.
+        width: the references of each.
     """
 
     area: ModbusArea
@@ -127,7 +128,7 @@ class MapStretch:
 
 @dataclass(frozen=True, slots=True)
 class ReferenceRun:
-    """Where an element, or a run of them, is: so many references from one on."""
+    """The references of an element or a run of elements: the first, and their number."""
 
     area: ModbusArea
     offset: int
@@ -135,7 +136,7 @@ class ReferenceRun:
 
 
 class MappedElement(NamedTuple):
-    """What a reference holds: an element, or a half of one of 32 bits."""
+    """The element of a reference, or a half of one with 32 bits."""
 
     element: Element
     half: str | None
@@ -171,33 +172,33 @@ class ModbusMap:
 
     Attributes:
         name: ``standard`` or ``custom``.
-        stretches: those to be written before those that can only be read.
+        stretches: the writable ones before those that can only be read.
     """
 
     name: str
     stretches: tuple[MapStretch, ...]
 
     def place(self, first: Element, count: int = 1, *, writes: bool = False) -> ReferenceRun:
-        """Where a run of elements is.
+        """The references of a run of elements.
 
         Args:
             first: the first of them.
             count: how many there are.
-            writes: True if they are to be written, which inputs cannot be.
+            writes: True for a write, for which inputs are not allowed.
 
         Raises:
-            UsageError: one of them has no reference, or they have no common stretch of them.
+            UsageError: one of them has no reference, or the references are not consecutive.
         """
         stretch, begin = self._one(first, writes=writes)
         last = first.after(count - 1)
         other, end = self._one(last, writes=writes)
         place = ReferenceRun(begin.area, begin.offset, end.offset + end.count - begin.offset)
         if stretch != other or (writes and place.count != count * begin.count):
-            raise UsageError(f"{first} and {last} have no Modbus references side by side")
+            raise UsageError(f"{first} to {last} have no consecutive Modbus references")
         return place
 
     def stretch_of(self, element: Element, *, writes: bool = False) -> int:
-        """The number of the stretch that an element is in.
+        """The number of the stretch with this element.
 
         Raises:
             UsageError: it has no reference.
@@ -205,7 +206,7 @@ class ModbusMap:
         return self._one(element, writes=writes)[0]
 
     def element_at(self, reference: Reference) -> MappedElement | None:
-        """What a reference holds; None for nothing."""
+        """The element of a reference; None if there is none."""
         for stretch in self.stretches:
             place, half = divmod(reference.offset - stretch.offset, stretch.width)
             if reference.area is stretch.area and 0 <= place < stretch.count:
@@ -215,7 +216,7 @@ class ModbusMap:
 
     @property
     def listed(self) -> str:
-        """The elements that it has, for messages."""
+        """The elements in the map, for messages."""
         return " ".join(dict.fromkeys(map(str, self.stretches))) or "none"
 
     def _one(self, element: Element, *, writes: bool) -> tuple[int, ReferenceRun]:
@@ -237,15 +238,13 @@ class ModbusMap:
 
     def _refused(self, element: Element, *, readable: bool) -> UsageError:
         if readable:
-            return UsageError(
-                f"{element} has a Modbus reference to be read, none to be written", element=str(element)
-            )
+            return UsageError(f"{element} can be read over Modbus, but not written", element=str(element))
         counter = element.symbol.removeprefix("D") == "RC" and self.name == STANDARD_NAME
         instead = f"{'RC' if element.symbol == 'DRC' else 'DRC'}{element.address}"
         if counter and element.address < 256:
             said = "C0 to C199 have 16 bits, C200 to C255 have 32"
             return UsageError(
-                f"{element} has no Modbus reference: {said}", hint=f"ask for {instead}", element=str(element)
+                f"{element} has no Modbus reference: {said}", hint=f"use {instead}", element=str(element)
             )
         return UsageError(
             f"{element} has no Modbus reference: the {self.name} map has {self.listed}",
@@ -259,15 +258,15 @@ STANDARD: Final = ModbusMap(STANDARD_NAME, _STANDARD_BITS + _STANDARD_REGISTERS)
 
 
 def map_of_registers(words: Sequence[int]) -> ModbusMap:
-    """The map that R3968 to R3980 describe.
+    """The map in R3968 to R3980.
 
-    A group whose figures are out of their range maps nothing.
+    A group with a value out of range maps nothing.
 
     Args:
         words: the thirteen registers.
 
     Raises:
-        DataError: they are not thirteen.
+        DataError: another number of registers.
     """
     if len(words) != REGISTER_COUNT:
         raise DataError(f"a Modbus map is R3968 to R3980: expected 13 registers, got {len(words)}")
@@ -280,13 +279,13 @@ def map_of_registers(words: Sequence[int]) -> ModbusMap:
 
 
 def parse_map(text: str) -> ModbusMap:
-    """Read a map as people write it: ``M1000-M1099=000001,R2000-R2199=400101``.
+    """Parse a map: ``M1000-M1099=000001,R2000-R2199=400101``.
 
-    Ranges of coils and holding registers take the place of the standard map, as R3968 = A55AH does; discrete
-    inputs and input registers stand beside it.
+    Ranges of coils and holding registers replace the standard map, as with R3968 = A55AH; discrete inputs and
+    input registers are added to it.
 
     Raises:
-        UsageError: it is none.
+        UsageError: it is not a map.
     """
     own: list[MapStretch] = []
     for part in text.split(","):
@@ -302,11 +301,11 @@ def parse_map(text: str) -> ModbusMap:
         needed, last, most = next(row[1:] for row in _OWN if row[0] is reference.area)
         if symbol != needed or first > last or not 1 <= count <= most:
             raise UsageError(
-                f"Modbus map {part.strip()!r}: a {reference.area.words} stands for 1 to {most} of {needed}, "
+                f"Modbus map {part.strip()!r}: {reference.area.words}: expected 1 to {most} of {needed}, "
                 f"from {needed}0 to {needed}{last} on"
             )
         if reference.offset + count > LAST_OFFSET + 1:
-            raise UsageError(f"Modbus map {part.strip()!r}: it goes on behind {reference.area:d}65536")
+            raise UsageError(f"Modbus map {part.strip()!r}: it continues after {reference.area:d}65536")
         if any(stretch.area is reference.area for stretch in own):
             raise UsageError(f"Modbus map {text!r:.80}: {reference.area.words}s are given twice")
         own.append(MapStretch(reference.area, reference.offset, symbol, first, count))

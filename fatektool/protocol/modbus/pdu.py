@@ -1,4 +1,4 @@
-"""Modbus PDUs and checksums, by pymodbus: the one file that knows it, and loads it only when it is used.
+"""Modbus PDUs and checksums, by pymodbus: the only file that uses it, and loads it only when needed.
 
 ::
 
@@ -8,9 +8,8 @@
     function(1) · n(1) · n bytes                            01 02 03 04 answer
     function + 80(1) · exception(1)                         any answer
 
-pymodbus takes some PDUs that are not quite right: it drops what follows one, takes any value for 'on',
-does not look at a byte count. So what it has read is written again: only what comes out as it went in is
-believed.
+pymodbus accepts some invalid PDUs: it drops bytes after a PDU, accepts any value for 'on', and does not check
+a byte count. So the parsed PDU is encoded again, and accepted only if the result has the same bytes.
 """
 
 from __future__ import annotations
@@ -54,13 +53,13 @@ OF_BITS: Final = frozenset({READ_COILS, READ_DISCRETE_INPUTS, WRITE_COIL, WRITE_
 
 @dataclass(frozen=True, slots=True)
 class Pdu:
-    """What a PDU says.
+    """The contents of a PDU.
 
     Attributes:
         function: 01 to 06, 0F, 10.
-        offset: where; 0 in the answer to a read, which does not say it.
-        count: how many; of a read's answer the bytes' worth of them.
-        bits: states of coils or inputs, in the answer to a read the rest of the last byte too.
+        offset: the address; 0 in the answer to a read, which has none.
+        count: of elements; in a read's answer as many as its bytes have.
+        bits: states of coils or inputs; in the answer to a read with the rest of the last byte.
         registers: values.
         exception: 0 for none.
     """
@@ -86,19 +85,19 @@ def answer_bytes(pdu: Pdu) -> bytes:
 
 
 def parse_request(data: bytes) -> Pdu:
-    """Read a request.
+    """Parse a request.
 
     Raises:
-        FrameError: it is none of these functions, or not in its form.
+        FrameError: another function, or an invalid form.
     """
     return _read(_requests(), data)
 
 
 def parse_answer(data: bytes) -> Pdu:
-    """Read an answer, an exception too.
+    """Parse an answer or an exception.
 
     Raises:
-        FrameError: it is none of these functions, or not in its form.
+        FrameError: another function, or an invalid form.
     """
     if data[:1] >= b"\x80":
         if len(data) != 2 or not data[1]:
@@ -108,7 +107,7 @@ def parse_answer(data: bytes) -> Pdu:
 
 
 def crc_bytes(data: bytes) -> bytes:
-    """The CRC of RTU as it is sent."""
+    """The CRC of RTU, as sent."""
     return _rtu().compute_CRC(data).to_bytes(2, "big")
 
 
@@ -122,7 +121,7 @@ def _read(classes: dict[int, type[ModbusPDU]], data: bytes) -> Pdu:
 
     kind = classes.get(data[0]) if data else None
     if kind is None:
-        raise FrameError(f"function {data[:1].hex().upper() or 'none'} is not one of the map's", raw=data)
+        raise FrameError(f"function {data[:1].hex().upper() or 'none'} is not supported", raw=data)
     read = kind()
     try:
         read.decode(data[1:])
@@ -131,7 +130,7 @@ def _read(classes: dict[int, type[ModbusPDU]], data: bytes) -> Pdu:
     except (ModbusException, ValueError, IndexError, struct.error) as error:
         raise FrameError(f"{FUNCTION_WORDS[data[0]]}: {error}", raw=data) from error
     if again != data:
-        raise FrameError(f"{FUNCTION_WORDS[data[0]]}: its lengths or values do not hold", raw=data)
+        raise FrameError(f"{FUNCTION_WORDS[data[0]]}: invalid lengths or values", raw=data)
     return said
 
 

@@ -4,9 +4,9 @@
 
     station(1) · PDU · CRC(2, low byte first)
 
-An RTU frame has no beginning and no end of its own but silence, which no adapter hands on. So its length is
-read from its function and byte count, for the request and for the answer of this function, and the CRC says
-which it is.
+Only silence marks the beginning and end of an RTU frame, and adapters do not pass on silence. So its length
+is found from its function and byte count, for the request and for the answer of this function, and the CRC
+shows which it is.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def _encode(station: int, pdu: bytes, number: int = 0) -> bytes:
 
 
 class RtuDecoder(Measured):
-    """Cuts RTU frames, requests and answers, out of a stream."""
+    """Splits a stream into RTU frames, requests and answers."""
 
     def _sizes(self, at: int) -> tuple[int, ...] | None:
         buffer = self._buffer
@@ -44,7 +44,7 @@ class RtuDecoder(Measured):
         return Frame(raw[0], raw[1] & ~EXCEPTION, raw[1:-2], raw)
 
     def _fault(self, raw: bytes) -> FrameError:
-        return FrameError("checksum: the CRC does not hold", raw=raw, checksum=True)
+        return FrameError("checksum: wrong CRC", raw=raw, checksum=True)
 
 
 RTU: Final = ModbusCodec(

@@ -1,4 +1,4 @@
-"""How long Modbus requests and answers are, and how much one holds: by kind and number of elements alone.
+"""Lengths and limits of Modbus requests and answers, by kind and number of elements.
 
 ::
 
@@ -9,8 +9,8 @@
     DR DD DRT        2                       the same, in registers
     DRC              2, and 2 between them   31, 1
 
-Between one 32-bit counter and the one two on, as elements count them, is another: a run of them is read
-over those between, and written one at a time.
+Between a 32-bit counter and the next but one, which is the next element, is another counter: a run is read
+with those between, and written one at a time.
 """
 
 from __future__ import annotations
@@ -37,10 +37,10 @@ if TYPE_CHECKING:
     from fatektool.protocol.elements import Element
 
 _MOST: Final = {True: {True: 1968, False: 2000}, False: {True: 123, False: 125}}
-"""How many bits or registers, by: of bits, writes."""
+"""The most bits or registers, by: of bits, writes."""
 
 TELLING: Final = 6
-"""Of a PDU, so many bytes show its length."""
+"""The bytes of a PDU that show its length."""
 
 _LAST_EXCEPTION: Final = 0x0B
 _MOST_READ: Final = 250
@@ -48,7 +48,7 @@ _MOST_WRITTEN: Final = 246
 
 
 def units(symbol: str, count: int) -> int:
-    """How many coils or registers so many elements of a kind take, those between them included."""
+    """The coils or registers of a number of elements of a kind, including those between."""
     kind = KINDS[symbol]
     if of_bits(symbol):
         return kind.bits * count
@@ -63,7 +63,7 @@ def of_bits(symbol: str) -> bool:
 
 
 def most(symbol: str, *, writes: bool) -> int:
-    """How many elements of a kind one request holds."""
+    """The most elements of a kind in one request."""
     limit = _MOST[of_bits(symbol)][writes]
     if symbol == "DRC":
         return 1 if writes else (limit + 2) // 4
@@ -79,7 +79,7 @@ def request_size(request: Request[Any]) -> int:
 
 
 def answer_size(request: Request[Any]) -> int:
-    """Length of the good answer's PDU."""
+    """Length of a valid answer's PDU."""
     return 5 if request.writes else 2 + _bytes(request, units_of(request))
 
 
@@ -88,12 +88,12 @@ def _bytes(request: Request[Any], count: int) -> int:
 
 
 def units_of(request: Request[Any]) -> int:
-    """How many coils or registers a request takes."""
+    """The number of coils or registers of a request."""
     return units(first_of(request).symbol, count_of(request))
 
 
 def first_of(request: Request[Any]) -> Element:
-    """The first element that a request names.
+    """The first element of a request.
 
     Raises:
         UsageError: Modbus has no such request.
@@ -102,7 +102,7 @@ def first_of(request: Request[Any]) -> Element:
 
 
 def count_of(request: Request[Any]) -> int:
-    """How many elements a request names."""
+    """The number of elements of a request."""
     return _run_of(request)[1]
 
 
@@ -132,7 +132,7 @@ _RUNS: Final[dict[Command, Callable[[Any], tuple[Element, int]]]] = {
     Command.READ_REGISTERS: _read_run,
     Command.WRITE_REGISTERS: _written_run,
 }
-"""What Modbus can ask, and which elements each request names: the first, and how many."""
+"""The requests that Modbus has, each with its first element and their number."""
 
 COMMANDS: Final = frozenset(_RUNS)
 
@@ -140,12 +140,12 @@ COMMANDS: Final = frozenset(_RUNS)
 def pdu_sizes(  # noqa: PLR0911  # a way out a form
     buffer: bytearray, at: int, end: int
 ) -> tuple[int, ...] | None:
-    """How long the PDU that begins here may be; None if it cannot be said yet.
+    """The possible lengths of the PDU that begins here; None if not known yet.
 
     Args:
         buffer: the bytes.
         at: where its function is.
-        end: behind what needs to be there to say more.
+        end: the end of the bytes needed for the length.
     """
     head = buffer[at:end]
     if not head:

@@ -4,7 +4,7 @@
 
     number(2) · 00 00 · length(2) · station(1) · PDU
 
-There is a length and no checksum: that is the network's. An answer repeats the number of its request.
+It has a length, but no checksum: the network has its own. An answer repeats the number of its request.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def _encode(station: int, pdu: bytes, number: int = 0) -> bytes:
 
 
 class TcpDecoder(Measured):
-    """Cuts TCP frames, requests and answers, out of a stream."""
+    """Splits a stream into TCP frames, requests and answers."""
 
     def _sizes(self, at: int) -> tuple[int, ...] | None:
         buffer = self._buffer
@@ -47,7 +47,7 @@ class TcpDecoder(Measured):
         return Frame(raw[6], raw[7] & ~EXCEPTION, raw[7:], raw, number)
 
     def _fault(self, raw: bytes) -> FrameError:
-        return FrameError("no frame", raw=raw)  # nothing can be wrong with one of the right length
+        return FrameError("invalid frame", raw=raw)  # cannot happen: a frame of the right length is valid
 
 
 def _number(raw: bytes) -> str:

@@ -152,7 +152,7 @@ def test_nan_and_refused_are_null_with_an_error(plant: Plant) -> None:
     assert set(document["errors"]) == {"D4", "R1", "R9000"}
     done = plant.cli("read", "D4:f32", "R2")
     assert done.out == "D4  -\nR2  5\n"
-    assert done.err == "warning: D4: 7FC00000 is no number as f32\n"
+    assert done.err == "warning: D4: 7FC00000 is not a number as f32\n"
 
 
 def test_many_refused_are_few_words(plant: Plant) -> None:

@@ -174,7 +174,7 @@ def test_every_command_has_a_form_and_a_name() -> None:
     [
         ("46", r"46 \(read registers\) takes ELEMENT COUNT, such as R12 3 or R12-R14; got nothing"),
         ("46 R12 3 4", "takes ELEMENT COUNT"),
-        ("46 X0 3", "takes registers and words, got X0"),
+        ("46 X0 3", "expected a register or word, got X0"),
         ("46 R12 65", "expected 1 to 64 elements, got 65"),
         ("47 R1", "takes ELEMENT:COUNT=VALUE"),
         ("45 X0=on Y1=on", "Y1: expected X1, the neighbour"),

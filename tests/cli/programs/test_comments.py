@@ -75,7 +75,7 @@ def test_the_project_of_the_inventory(cli: Cli, pdw: Path, monkeypatch: pytest.M
     pdw.write_bytes(pdw.read_bytes()[:5000])
     done = cli("read", "R8", "-p", "press")
     assert (done.code, done.out) == (0, "R8  0\n")
-    assert "warning: no comments: press.pdw: the project file is cut short" in done.err
+    assert "warning: no comments: press.pdw: the project file is incomplete" in done.err
     assert cli("read", "R8", "-p", "press", "--comments", pdw).code == 5
     checked = cli("inventory", "check")
     assert checked.code == 1

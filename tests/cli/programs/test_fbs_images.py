@@ -116,7 +116,7 @@ def test_a_plc_that_keeps_its_program_to_itself(place: Path, cli: Cli, state: st
         assert done.code == 0
         return
     assert done.code == 4
-    assert "the FBs papers list neither 4F nor 50, and a password may be set" in done.err
+    assert "the FBs papers have neither 4F nor 50, and a password may be set" in done.err
     assert "the engineer's project file" in done.err
     assert not (place / "b1.json").exists()
 

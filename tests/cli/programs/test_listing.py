@@ -118,7 +118,7 @@ def test_some_networks_with_their_words(cli: Cli) -> None:
         (["--network", "3-1"], 2, "expected a number or a range"),
         (["--network", "x"], 2, "expected a number or a range"),
         (["--network", "9" * 5000], 2, "expected a number or a range"),
-        (["--encoding", "utf-8"], 2, "no code page 'utf-8'"),
+        (["--encoding", "utf-8"], 2, "unknown code page 'utf-8'"),
         (["--comments", "press.json"], 5, "a backup has no comments"),
         (["--comments", "no.pdw"], 2, "cannot read no.pdw"),
     ],
@@ -134,7 +134,7 @@ def test_a_program_without_mnemonics(cli: Cli) -> None:
     save_backup(backup(program(400)), Path("old.json"))
     done = cli("listing", "old.json")
     assert (done.code, done.out) == (5, "")
-    assert "no mnemonics: how the code of the family 'facon' (FB30) is made is not known" in done.err
+    assert "no mnemonics: the code of the family 'facon' (FB30) is not known" in done.err
     assert cli("xref", "old.json").code == 5
     found = fatektool.load_program("old.json")
     assert (found.kind, found.header.family, found.code) == ("backup", FACON, None)

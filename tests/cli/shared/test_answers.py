@@ -159,7 +159,7 @@ def test_an_answer_of_a_program_that_keeps_itself(press: Press, cli: Cli) -> Non
         done = cli("backup", "x.json", "-p", door.target)
         assert done.code == 4
         assert "refused to read program page 0 (4F): error 4" in one_line(done.err)
-        assert "a password may be set; what stays is the engineer's project file" in done.err
+        assert "a password may be set; use the engineer's project file" in done.err
         assert not (press.folder / "x.json").exists()
 
 

@@ -64,7 +64,7 @@ def test_a_header_that_does_not_hold_is_kept_if_that_is_asked_for(place: Path, c
     assert not Path("x.json").exists()
     kept = cli("backup", "x.json", "-p", "sim:odd", "--any-header", "--json")
     assert kept.code == 0
-    assert kept.err == "warning: the program's header does not hold: byte 0: expected F (46), got X (58)\n"
+    assert kept.err == "warning: invalid header of the program: byte 0: expected F (46), got X (58)\n"
     assert kept.document("backup-result")["header"]["valid"] is False
     shown = cli("inspect", "x.json", "--json")
     assert shown.document("inspect")["faults"] == ["byte 0: expected F (46), got X (58)"]

@@ -143,7 +143,7 @@ def test_a_map_as_given_and_from_a_snapshot(protocol: str, state: str, place: Pa
         assert "R100 has no Modbus reference: the custom map has M1000-M1099" in one_line(refused.err)
         refused = cli("write", "M1100=0", *options)
         assert refused.code == 2
-        assert "M1100 has a Modbus reference to be read, none to be written" in refused.err
+        assert "M1100 can be read over Modbus, but not written" in refused.err
     without = cli("read", "R2000", "-p", state, "--protocol", protocol)
     assert without.code == 4
     assert "exception 02" in without.err
@@ -263,9 +263,9 @@ def test_the_map_both_ways(cli: Cli) -> None:
     ("name", "said"),
     [
         ("R4168", "R4168 has no Modbus reference"),
-        ("RC200", "ask for DRC200"),
+        ("RC200", "use DRC200"),
         ("404169", "404169: no element of the PLC"),
-        ("500001", "is no Modbus reference"),
+        ("500001", "is not a Modbus reference"),
         ("Q7", "unknown element kind"),
     ],
 )

@@ -126,7 +126,7 @@ def test_a_refusal(line: Line) -> None:
 def test_what_cannot_be_named(line: Line) -> None:
     refused = line("read", "R17152")
     assert refused.code == 2
-    assert "its bytes 52 43 00 begin as RC does" in one_line(refused.err)
+    assert "its bytes 52 43 00 begin like RC" in one_line(refused.err)
 
 
 @pytest.mark.parametrize("command", ["backup", "verify", "restore"])

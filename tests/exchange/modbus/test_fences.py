@@ -200,10 +200,10 @@ def test_what_a_gateway_says_is_no_refusal() -> None:
     assert linked(Peer(gateway), TCP).ask(R100) == (9,)
     link = linked(Peer(lambda request, _: gateway(request, 0)), TCP)
     with pytest.raises(
-        NoAnswer, match=r"the gateway says: it asked the PLC, and got no answer \(exception 0B\)"
+        NoAnswer, match=r"the gateway reports: no answer from the PLC \(exception 0B\)"
     ) as told:
         link.ask(R100)
-    assert str(told.value.hint).startswith("behind the gateway: is the PLC on")
+    assert str(told.value.hint).startswith("check that the PLC is on")
 
 
 # --- what is written ------------------------------------------------------------------------------

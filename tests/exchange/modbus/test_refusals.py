@@ -165,13 +165,13 @@ def test_a_long_stream_waits_for_who_is_busy_now_and_then() -> None:
     [
         (
             10,
-            "the gateway says: it has no path to the PLC (exception 0A)",
-            "is this station in the gateway's table",
+            "the gateway reports: no path to the PLC (exception 0A)",
+            "check that the gateway's table has this station",
         ),
         (
             11,
-            "the gateway says: it asked the PLC, and got no answer (exception 0B)",
-            "behind the gateway: is the PLC on",
+            "the gateway reports: no answer from the PLC (exception 0B)",
+            "check that the PLC is on",
         ),
     ],
 )
@@ -195,7 +195,7 @@ def test_a_write_that_did_not_leave_the_gateway_is_not_looked_for() -> None:
             linked(slave, TCP).ask(TO_R105)
         assert {asked[0] for asked in slave.asked} == functions
         assert ("it is not known whether the PLC executed it" in caught.value.message) == (code == 11)
-        assert f"the gateway says: {GATEWAY[code]} (exception {code:02X})" in caught.value.message
+        assert f"the gateway reports: {GATEWAY[code]} (exception {code:02X})" in caught.value.message
         assert "nothing received" not in caught.value.message
         assert "gateway" in str(caught.value.hint)
 

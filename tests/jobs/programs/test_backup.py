@@ -56,7 +56,9 @@ def test_a_running_plc_is_backed_up_and_goes_on_running() -> None:
 def test_a_header_that_does_not_hold(*, single_pass: bool) -> None:
     image = program(400, page0=header(500, b"XB30"))
     bench = Bench(image)
-    with pytest.raises(DataError, match=r"header .page 0. does not hold: byte 0: .*--any-header") as caught:
+    with pytest.raises(
+        DataError, match=r"invalid header of the program .page 0.: byte 0: .*--any-header"
+    ) as caught:
         backup(bench.plc, single_pass=single_pass)
     assert caught.value.details["faults"][1].startswith("bytes 4 and 5: expected the ladder size 400")
     assert bench.tap.count[READ_PAGE] == PAGES  # no second pass for it

@@ -210,7 +210,7 @@ def test_a_nan_has_no_value_in_any_format() -> None:
     taken = take_snapshot(made.plc, items)
     check(taken.document(), "snapshot")
     assert taken.values == {"nan": None, "R1": 0}
-    assert taken.errors == {"nan": "7FC00000 is no number as f32"}
+    assert taken.errors == {"nan": "7FC00000 is not a number as f32"}
     assert parse_snapshot(FORMATS["json"](taken).encode(), "x") == taken
     assert "nan" not in FORMATS["influx"](taken)
     assert "nan" not in FORMATS["prometheus"](taken)

@@ -53,11 +53,11 @@ def test_units_over_tcp(unit: int, words: str) -> None:
 
 def test_everyone_on_a_serial_line() -> None:
     (shown,) = new_explainer("modbus-ascii").explain(b":0006000C0001ED\r\n", FrameRole.REQUEST)
-    assert shown.fields[1].meaning == "all (broadcast), no PLC answers"
+    assert shown.fields[1].meaning == "broadcast to all PLCs, none answers"
 
 
 def test_an_exception_of_a_gateway() -> None:
     """It is a gateway's word, and known: not a code that is in no list."""
     raw = bytes.fromhex("0001 0000 0003 01 83 0A")
     (shown,) = new_explainer("modbus-tcp").explain(raw, FrameRole.ANSWER)
-    assert shown.fields[-1].meaning == "REFUSED: the gateway says: it has no path to the PLC"
+    assert shown.fields[-1].meaning == "REFUSED: the gateway reports: no path to the PLC"

@@ -84,7 +84,7 @@ def test_references_of_nothing(text: str) -> None:
     "text", ["0", "4001", "200001", "500001", "400000", "465537", "4000001", "R1", "", "40 001"]
 )
 def test_what_is_no_reference(text: str) -> None:
-    with pytest.raises(UsageError, match="is no Modbus reference: expected 0, 1, 3 or 4"):
+    with pytest.raises(UsageError, match="is not a Modbus reference: expected 0, 1, 3 or 4"):
         Reference.parse(text)
 
 
@@ -120,9 +120,9 @@ def test_wide_elements_take_their_parts(name: str, reference: str, count: int) -
         ("WM1992", "WM1992 has no Modbus reference"),
         (
             "RC200",
-            "RC200 has no Modbus reference: C0 to C199 have 16 bits, C200 to C255 have 32; ask for DRC200",
+            "RC200 has no Modbus reference: C0 to C199 have 16 bits, C200 to C255 have 32; use DRC200",
         ),
-        ("DRC199", "C200 to C255 have 32; ask for RC199"),
+        ("DRC199", "C200 to C255 have 32; use RC199"),
     ],
 )
 def test_elements_without_a_reference(name: str, said: str) -> None:
@@ -136,7 +136,7 @@ def test_a_run_lies_within_one_stretch() -> None:
     with pytest.raises(UsageError, match="R4168 has no Modbus reference"):
         STANDARD.place(Element("R", 4100), 69)
     assert STANDARD.place(Element("DRC", 200), 3).count == 10  # C201 and C203 between them
-    with pytest.raises(UsageError, match="no Modbus references side by side"):
+    with pytest.raises(UsageError, match="have no consecutive Modbus references"):
         STANDARD.place(Element("DRC", 200), 3, writes=True)
 
 
@@ -196,7 +196,7 @@ def test_groups_out_of_their_range_map_nothing() -> None:
 def test_what_can_be_read_only() -> None:
     own = map_of_registers(EXAMPLE)
     assert own.place(Element("M", 1100)).area is ModbusArea.DISCRETE_INPUT
-    with pytest.raises(UsageError, match="M1100 has a Modbus reference to be read, none to be written"):
+    with pytest.raises(UsageError, match="M1100 can be read over Modbus, but not written"):
         own.place(Element("M", 1100), writes=True)
     both = parse_map("R0-R9=300001,R0-R4=400001")
     assert both.place(Element("R", 3)).area is ModbusArea.HOLDING_REGISTER
@@ -208,13 +208,13 @@ def test_what_can_be_read_only() -> None:
     [
         ("M0-M9", "expected ELEMENT-ELEMENT=REFERENCE"),
         ("M0-R9=000001", "expected ELEMENT-ELEMENT=REFERENCE"),
-        ("R0-R9=000001", "a coil stands for 1 to 2001 of M, from M0 to M2001 on"),
-        ("M0-M9=400001", "a holding register stands for 1 to 3840 of R"),
-        ("M9-M0=000001", "a coil stands for"),
-        ("M2002=000001", "a coil stands for"),
-        ("M0-M2001=000001", "a coil stands for"),
-        ("M0-M9=200001", "is no Modbus reference"),
-        ("M0-M9=065530", "goes on behind 065536"),
+        ("R0-R9=000001", "coil: expected 1 to 2001 of M, from M0 to M2001 on"),
+        ("M0-M9=400001", "holding register: expected 1 to 3840 of R"),
+        ("M9-M0=000001", "coil: expected 1 to"),
+        ("M2002=000001", "coil: expected 1 to"),
+        ("M0-M2001=000001", "coil: expected 1 to"),
+        ("M0-M9=200001", "is not a Modbus reference"),
+        ("M0-M9=065530", "continues after 065536"),
         ("M0-M9=000001,M20=000100", "coils are given twice"),
     ],
 )

@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 )
 @click.option("--push", "remote", metavar="REMOTE", help="Then push the history: a folder, ssh://, https://.")
 @click.option("--single-pass", is_flag=True, help="Read once instead of twice; nothing is compared.")
-@click.option("--any-header", is_flag=True, help="Keep images whose header does not hold, marked as such.")
+@click.option("--any-header", is_flag=True, help="Keep images with an invalid header, and mark them.")
 @alarm_options(changes=True)
 @news_option
 @fleet_options

@@ -1,4 +1,4 @@
-r"""FACON ASCII frames, both ways the same form (FACON paper, section 2).
+r"""FACON ASCII frames; requests and answers have the same form (FACON paper, section 2).
 
 ::
 
@@ -6,8 +6,8 @@ r"""FACON ASCII frames, both ways the same form (FACON paper, section 2).
 
 The LRC is the sum of all bytes from STX to the last of the data, modulo 256, in two capital hex digits.
 
-STX is never inside a frame, so a second one before ETX begins a new frame (``resync``). A frame that
-passes 508 bytes without ETX is dropped.
+STX is never inside a frame, so a second one before ETX begins a new frame (``resync``). A frame of more than
+508 bytes without ETX is dropped.
 """
 
 from __future__ import annotations
@@ -43,12 +43,12 @@ _FRAME: Final = re.compile(rb"\x02([0-9A-F]{2})([0-9A-F]{2})([^\x03]{0,%d})([^\x
 
 
 def lrc(data: bytes) -> bytes:
-    """The checksum of everything from STX to the last data byte, at most a frame, as two hex digits."""
+    """The checksum of all bytes from STX to the last data byte, at most a frame, as two hex digits."""
     return end_of(data)[:2]
 
 
 def end_of(data: bytes) -> bytes:
-    """What follows everything from STX to the last data byte, at most a frame: checksum and ETX."""
+    """Checksum and ETX for the bytes from STX to the last data byte, at most a frame."""
     if data.isascii():  # Adler-32's low half is the sum modulo 65521, which such a frame does not reach
         return _ENDS[adler32(data, 0) & 0xFF]
     return _ENDS[sum(data) & 0xFF]
@@ -58,38 +58,38 @@ def frame_bytes(station: int, command: int, data: bytes) -> bytes:
     """One frame.
 
     Args:
-        station: 0 to 255; 0 is all PLCs, and none answers; 255 is in no paper, and is used.
+        station: 0 to 255; 0 is a broadcast; 255 is in no paper, but is used.
         command: the command's code.
         data: 0 to 500 characters without STX and ETX.
 
     Raises:
-        UsageError: a station or data that no frame can carry.
+        UsageError: a station or data that does not fit into a frame.
     """
     if not 0 <= station <= LAST_STATION:
         raise UsageError(f"station: expected 0 to {LAST_STATION}, got {station}")
     if len(data) > MAX_DATA:
         raise UsageError(f"frame data: expected at most {MAX_DATA} characters, got {len(data)}")
     if 2 in data or 3 in data:
-        raise UsageError("frame data: STX (02) and ETX (03) cannot stand inside a FACON frame")
+        raise UsageError("frame data: expected no STX (02) and no ETX (03)")
     body = b"\x02%b%b%b" % (_PAIRS[station], _PAIRS[command], data)
     return body + end_of(body)
 
 
 class FaconDecoder(Delimited):
-    """Cuts FACON frames out of a stream, whatever its chunks."""
+    """Splits a stream into FACON frames."""
 
     begin = STX
     end = ETX
     longest = MAX_FRAME
 
     def next_frame(self) -> Frame | None:
-        """Give the next frame, or None when more bytes are needed.
+        """The next frame, or None if more bytes are needed.
 
         Raises:
             FrameError: bad bytes, dropped.
         """
         buffer = self._buffer
-        if (found := _FRAME.match(buffer)) and not buffer.rfind(STX, 0, found.end()):  # by far the most
+        if (found := _FRAME.match(buffer)) and not buffer.rfind(STX, 0, found.end()):  # the usual case
             parts = found.group(0, 1, 2, 3, 4)
             del buffer[: found.end()]
             return _checked(*parts)
@@ -100,10 +100,10 @@ class FaconDecoder(Delimited):
 
 
 def parse_frame(raw: bytes) -> Frame:
-    """Read one frame from STX to ETX.
+    """Parse one frame from STX to ETX.
 
     Raises:
-        FrameError: a wrong checksum (then ``checksum`` is True), or no frame.
+        FrameError: a wrong checksum (then ``checksum`` is True), or not a frame.
     """
     if (found := _FRAME.fullmatch(raw)) and not raw.rfind(STX):
         return _checked(*found.group(0, 1, 2, 3, 4))
@@ -116,7 +116,7 @@ def parse_frame(raw: bytes) -> Frame:
 
 
 def _checked(raw: bytes, station: bytes, command: bytes, data: bytes, checksum: bytes) -> Frame:
-    """What is a frame but for its checksum, as one.
+    """A frame whose form is right, after a check of the checksum.
 
     Raises:
         FrameError: the checksum is wrong.
@@ -148,10 +148,10 @@ class FaconCodec(FatekCodec):
         return FaconDecoder()
 
     def good_answer(self, request: Request[A], asked: bytes, raw: bytes) -> A:
-        """What a good answer says: it begins as its request does, up to the command."""
+        """The contents of a valid answer: it begins like its request, up to the command."""
         command = request.command
         if raw[:6] != asked[:5] + b"0" or raw[-3:] != end_of(raw[:-3]) or command == _LOOPBACK:
-            raise FrameError("not the good answer", raw=raw)
+            raise FrameError("not the expected answer", raw=raw)
         data = self.data
         answer: A = data.rows[command].parse_answer(data.notation, request, raw[6:-3])
         return answer
@@ -161,16 +161,16 @@ class FaconCodec(FatekCodec):
         return _PAIRS[sum(data) & 0xFF]
 
     def error_text(self, code: int) -> str:
-        """An error code in words."""
+        """The meaning of an error code."""
         from fatektool.protocol.plc_errors import meaning_of
 
         return meaning_of(code)
 
     def echo_may_pass(self, request: Request[A]) -> bool:
-        """True if a request's own data reads as an answer to it.
+        """True if the data of a request is also a valid answer to it.
 
-        The echo of 4E and of STOP reads as a good answer, so does that of one DD under 46 and of some under
-        48, which are all hex digits; that of RUN reads as error 1.
+        The echo of 4E and of STOP is also a valid answer. So is that of one DD with 46, and of some with 48,
+        which have only hex digits; that of RUN reads as error 1.
         """
         try:
             self.data.parse_answer(request, self.data.request_data(request))

@@ -1,7 +1,7 @@
 """The data field of each FACON command (FACON paper, section 4.2).
 
-4F and 53 are drawn without the error character in the paper's figures but with it in its example, so both are
-taken: the length shows which it is.
+The paper's figures of 4F and 53 have no error character, but its example has one, so both are accepted: the
+length shows which it is.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 def _brief(chars: bytes) -> BriefStatus:
-    from fatektool.protocol.status import BriefStatus  # not before the request is on its way
+    from fatektool.protocol.status import BriefStatus  # loaded after the request is sent
 
     return BriefStatus.parse(TEXT.take_octets(chars))
 

@@ -1,4 +1,4 @@
-"""FACON frames explained."""
+"""Explanations of FACON frames."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ if TYPE_CHECKING:
 
 
 class FaconExplainer(FatekExplainer):
-    """Explains a conversation in FACON."""
+    """Explains FACON frames."""
 
     form: ClassVar[str] = "bytes from STX (02) to ETX (03)"
     binary: ClassVar[bool] = False
     cut_off: ClassVar[str] = "cut off: no ETX (03)"
 
     def role_of(self, raw: bytes, role: FrameRole) -> FrameRole:
-        """What is known: the frame does not say it."""
+        """``role``: the frame itself does not show it."""
         del raw
         return role
 

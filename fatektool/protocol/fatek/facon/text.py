@@ -1,4 +1,4 @@
-"""How FACON writes the pieces of a data field: in characters, in strict capitals (FACON paper, section 4.1).
+"""The notation of FACON data fields: characters, only capital letters (FACON paper, section 4.1).
 
 ::
 
@@ -48,11 +48,11 @@ class TextNotation(Notation):
         raise FrameError("expected capital hex digits in pairs", raw=raw)
 
     def bits(self, values: Iterable[bool]) -> bytes:
-        """Discretes as a character each."""
+        """Discretes, one character each."""
         return bytes(0x31 if value else 0x30 for value in values)
 
     def take_bits(self, raw: bytes) -> tuple[bool, ...]:
-        """Read discretes, a character each."""
+        """Parse discretes, one character each."""
         if raw.translate(None, b"01"):
             raise FrameError("expected 0 or 1 for each discrete", raw=raw)
         return tuple(char == 0x31 for char in raw)
@@ -70,7 +70,7 @@ class TextNotation(Notation):
         return b"%02X" % (number & 0xFF)
 
     def take_count(self, data: bytes) -> int:
-        """Read the two digits of a number of elements, 0 to 255."""
+        """Parse the two digits of a number of elements, 0 to 255."""
         return self.take_octets(data[:2].rjust(2, b"?"))[0]
 
     def element(self, element: Element) -> bytes:
@@ -82,13 +82,13 @@ class TextNotation(Notation):
         return len(element.symbol) + element.kind.digits
 
     def take_element(self, data: bytes, at: int) -> tuple[Element, int]:
-        """Read one element: all letters are the symbol."""
+        """Parse one element: all letters are the symbol."""
         place = at
         while place < len(data) and data[place] in _LETTERS:
             place += 1
         kind = KINDS.get(data[at:place].decode("ascii"))
         if kind is None:
-            raise FrameError(f"no element at character {at} of the data", raw=data)
+            raise FrameError(f"expected an element at character {at} of the data", raw=data)
         digits = data[place : place + kind.digits]
         if len(digits) != kind.digits or not digits.isdigit():
             raise FrameError(f"{kind.symbol}: expected {kind.digits} decimal digits", raw=data)
@@ -102,7 +102,7 @@ class TextNotation(Notation):
         return int(data, 16) if len(data) == 1 and data != b"0" and data in HEX_DIGITS else None
 
     def wrong_error(self, data: bytes) -> FrameError:
-        """For an answer of the right length that does not begin with 0."""
+        """The error for an answer of the right length that does not begin with 0."""
         return FrameError(f"expected the error character 0 before the data, got {data[:1]!r}", raw=data)
 
 

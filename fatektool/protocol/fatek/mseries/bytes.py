@@ -1,4 +1,4 @@
-"""How the M-series writes the pieces of a data field: in bytes (M-series paper, section 2.4).
+"""The notation of M-series data fields: bytes (M-series paper, section 2.4).
 
 ::
 
@@ -6,9 +6,9 @@
     element  symbol, 1 to 3 letters · address, 2 bytes, high byte first: 58 00 10 is X16
     value    a discrete 00 or 01 · 16 bits 2 bytes · 32 bits 4 bytes, high byte first
 
-Nothing says how long a symbol is: ``44 57 58`` begins DWX, or is D22360. The longest symbol that matches is
-taken. An address whose high byte is a letter may so be read another way: R17152 is ``52 43 00``, which begins
-as RC does. Such an element is never sent.
+There is no length of a symbol: ``44 57 58`` is the beginning of DWX, or D22360. The longest symbol that
+matches is used. So an address whose high byte is a letter may be read as something else: R17152 is ``52 43
+00``, which begins like RC. Such an element is never sent.
 """
 
 from __future__ import annotations
@@ -41,19 +41,19 @@ class BinaryNotation(Notation):
     value_alphabet = bytes(range(256))
 
     def octets(self, data: bytes) -> bytes:
-        """As they are."""
+        """The same bytes."""
         return data
 
     def take_octets(self, raw: bytes) -> bytes:
-        """As they are."""
+        """The same bytes."""
         return raw
 
     def bits(self, values: Iterable[bool]) -> bytes:
-        """Discretes as a byte each."""
+        """Discretes, one byte each."""
         return bytes(values)
 
     def take_bits(self, raw: bytes) -> tuple[bool, ...]:
-        """Read discretes, a byte each."""
+        """Parse discretes, one byte each."""
         if raw.translate(None, b"\0\1"):
             raise FrameError("expected 00 or 01 for each discrete", raw=raw)
         return tuple(map(bool, raw))
@@ -77,15 +77,14 @@ class BinaryNotation(Notation):
         return data[0]
 
     def element(self, element: Element) -> bytes:
-        """``52 00 0C``; not those that the receiver would take for another."""
+        """``52 00 0C``; refused if the receiver would read another element."""
         data = element.symbol.encode() + element.address.to_bytes(_ADDRESS_BYTES, "big")
         if element.address < _FIRST_LETTER:
             return data
         seen = _symbol_at(data, 0)
         if seen != element.symbol:
             raise UsageError(
-                f"{element} cannot be named in mseries: "
-                f"its bytes {data.hex(' ').upper()} begin as {seen} does",
+                f"{element} cannot be sent in mseries: its bytes {data.hex(' ').upper()} begin like {seen}",
                 hint="read or write it in a run that begins below it",
                 element=str(element),
             )
@@ -96,10 +95,10 @@ class BinaryNotation(Notation):
         return len(element.symbol) + _ADDRESS_BYTES
 
     def take_element(self, data: bytes, at: int) -> tuple[Element, int]:
-        """Read one element: the longest symbol that is there."""
+        """Parse one element: the longest symbol that matches."""
         symbol = _symbol_at(data, at)
         if symbol is None:
-            raise FrameError(f"no element at byte {at} of the data", raw=data)
+            raise FrameError(f"expected an element at byte {at} of the data", raw=data)
         place = at + len(symbol)
         address = data[place : place + _ADDRESS_BYTES]
         if len(address) != _ADDRESS_BYTES:
@@ -114,12 +113,12 @@ class BinaryNotation(Notation):
         return data[0] if len(data) == 1 and data[0] else None
 
     def wrong_error(self, data: bytes) -> FrameError:
-        """For an answer of the right length that does not begin with 00."""
+        """The error for an answer of the right length that does not begin with 00."""
         return FrameError(f"expected the error byte 00 before the data, got {data[0]:02X}", raw=data)
 
 
 def _symbol_at(data: bytes, at: int) -> str | None:
-    """The longest symbol that begins here, None for none."""
+    """The longest symbol at this place; None if there is none."""
     for size in range(_LONGEST, 0, -1):
         symbol = _SYMBOLS.get(data[at : at + size])
         if symbol is not None:

@@ -9,12 +9,12 @@ r"""M-series binary frames (M-series paper, section 1).
 
 The CRC is CRC-16/MODBUS over length and payload.
 
-55 AA may be in a payload, and so may a whole frame: nothing but the length says where a frame ends. How
-the next is found behind a wrong length or noise: ``resync``.
+55 AA may be in a payload, and so may a whole frame: only the length gives the end of a frame. ``resync``
+finds the next frame after a wrong length or noise.
 
-The tables of the paper allow 262 bytes of payload at most: 45 with 256 discretes. How long an answer to 53 is
-no paper says, so up to 453 are taken, 64 items of 7 bytes and 5 before them, and a wrong length makes nobody
-wait for more.
+The tables of the paper allow 262 bytes of payload at most: 45 with 256 discretes. No paper has the length of
+an answer to 53, so up to 453 are accepted (64 items of 7 bytes and 5 before them), and a wrong length never
+causes a wait for more.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ _LOOPBACK: Final = Command.LOOPBACK
 _BEGINNING: Final = re.compile(
     rb"[\x51\x52](?:\Z|\x10(?:\Z|\x00(?:\Z|[\x02-\xFF])|\x01(?:\Z|[\x00-\x%02X])))" % (MAX_PAYLOAD & 0xFF)
 )
-"""What may be the beginning of a frame, or all of it that has come so far."""
+"""What may be the beginning of a frame, or all of it that was received so far."""
 
 
 def frame_bytes(header: int, station: int, command: int, data: bytes) -> bytes:
@@ -60,12 +60,12 @@ def frame_bytes(header: int, station: int, command: int, data: bytes) -> bytes:
 
     Args:
         header: QUERY or RESPONSE.
-        station: 0 to 255; 0 is all PLCs, and none answers; 255 is in no paper, and is used.
+        station: 0 to 255; 0 is a broadcast; 255 is in no paper, but is used.
         command: the command's code.
         data: 0 to 451 bytes.
 
     Raises:
-        UsageError: a station or data that no frame can carry.
+        UsageError: a station or data that does not fit into a frame.
     """
     if not 0 <= station <= LAST_STATION:
         raise UsageError(f"station: expected 0 to {LAST_STATION}, got {station}")
@@ -77,14 +77,14 @@ def frame_bytes(header: int, station: int, command: int, data: bytes) -> bytes:
 
 
 class MseriesDecoder(Measured):
-    """Cuts M-series frames out of a stream, whatever its chunks."""
+    """Splits a stream into M-series frames."""
 
     def _sizes(self, at: int) -> tuple[int, ...] | None:
         begun = _BEGINNING.match(self._buffer, at)
         if begun is None:
             return ()
         if begun.end() - at < _SHORTEST_BEGINNING:
-            return (FRAMING_BYTES + MIN_PAYLOAD,)  # at least; the length has not come
+            return (FRAMING_BYTES + MIN_PAYLOAD,)  # at least; the length was not received yet
         return (FRAMING_BYTES + int.from_bytes(self._buffer[at + 2 : at + 4], "big"),)
 
     def _next_beginning(self) -> int:
@@ -106,21 +106,21 @@ class MseriesDecoder(Measured):
 
 
 def parse_frame(raw: bytes) -> Frame:
-    """Read one frame from header to terminator.
+    """Parse one frame from header to terminator.
 
     Raises:
-        FrameError: a wrong checksum (then ``checksum`` is True), or no frame.
+        FrameError: a wrong checksum (then ``checksum`` is True), or not a frame.
     """
     begins = _BEGINNING.match(raw)
     if begins is None or not FRAMING_BYTES + MIN_PAYLOAD <= len(raw) <= MAX_FRAME:
         raise FrameError(
-            f"no frame: expected 51 10 or 52 10 and {FRAMING_BYTES + MIN_PAYLOAD} to {MAX_FRAME} bytes, "
+            f"invalid frame: expected 51 10 or 52 10 and {FRAMING_BYTES + MIN_PAYLOAD} to {MAX_FRAME} bytes, "
             f"got {len(raw)}",
             raw=raw,
         )
     size = int.from_bytes(raw[2:4], "big")
     if len(raw) != FRAMING_BYTES + size:
-        raise FrameError(f"length: {size} says {FRAMING_BYTES + size} bytes, got {len(raw)}", raw=raw)
+        raise FrameError(f"length {size}: expected {FRAMING_BYTES + size} bytes, got {len(raw)}", raw=raw)
     frame = _frame_of(raw)
     if frame is None:
         raise _fault_of(raw)
@@ -128,17 +128,17 @@ def parse_frame(raw: bytes) -> Frame:
 
 
 def _frame_of(raw: bytes) -> Frame | None:
-    """The frame that bytes of the right length are, or None."""
+    """The frame in bytes of the right length, or None."""
     if raw[-2:] != TERMINATOR or raw[-4:-2] != crc_bytes(raw[2:-4]):
         return None
     return Frame(raw[4], raw[5], raw[6:-4], raw)
 
 
 def _fault_of(raw: bytes) -> FrameError:
-    """Why they are none."""
+    """The reason why they are not a frame."""
     if raw[-2:] != TERMINATOR:
         got = raw[-2:].hex(" ").upper()
-        return FrameError(f"no end where the length says: expected 55 AA, got {got}", raw=raw)
+        return FrameError(f"after the length: expected 55 AA, got {got}", raw=raw)
     expected = crc_bytes(raw[2:-4]).hex(" ").upper()
     got = raw[-4:-2].hex(" ").upper()
     return FrameError(f"checksum: expected {expected}, got {got}", raw=raw, checksum=True)
@@ -164,17 +164,17 @@ class MseriesCodec(FatekCodec):
         return MseriesDecoder()
 
     def parse_answer(self, request: Request[A], frame: Frame) -> A:
-        """What a frame answers to this request."""
+        """The answer to this request in a frame."""
         if frame.raw[0] != RESPONSE:
-            raise FrameError("a request (51), expected an answer (52)", raw=frame.raw)
+            raise FrameError("expected an answer (52), got a request (51)", raw=frame.raw)
         return self.data.parse_answer(request, frame.data)
 
     def good_answer(self, request: Request[A], asked: bytes, raw: bytes) -> A:
-        """What a good answer says: its station and command are the request's."""
+        """The contents of a valid answer: its station and command are those of the request."""
         command = request.command
         head = b"\x52\x10%b%b\0" % ((len(raw) - FRAMING_BYTES).to_bytes(2, "big"), asked[4:6])
         if raw[:7] != head or raw[-4:] != crc_bytes(raw[2:-4]) + TERMINATOR or command == _LOOPBACK:
-            raise FrameError("not the good answer", raw=raw)
+            raise FrameError("not the expected answer", raw=raw)
         data = self.data
         answer: A = data.rows[command].parse_answer(data.notation, request, raw[7:-4])
         return answer
@@ -184,7 +184,7 @@ class MseriesCodec(FatekCodec):
         return crc_bytes(data)
 
     def error_text(self, code: int) -> str:
-        """An error code in words."""
+        """The meaning of an error code."""
         return meaning_of(code)
 
     def echo_may_pass(self, request: Request[A]) -> bool:  # noqa: ARG002  # the interface's

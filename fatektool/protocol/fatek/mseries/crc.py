@@ -5,8 +5,8 @@
     start FFFF · polynomial 8005, least significant bit first (A001) · no final inversion
     over "123456789": 4B37
 
-The paper has its bytes swapped and then sends the high byte first, which on the wire is Modbus' own order:
-the low byte first. One table look-up a byte; ``bench/crc.py`` has it beside the libraries.
+In the paper its bytes are swapped and then sent high byte first, which on the wire is the order of Modbus:
+the low byte first. One table look-up for each byte; ``bench/crc.py`` compares it with libraries.
 """
 
 from __future__ import annotations
@@ -37,5 +37,5 @@ def crc16(data: bytes) -> int:
 
 
 def crc_bytes(data: bytes) -> bytes:
-    """The checksum as it is sent, the low byte first."""
+    """The checksum as sent, the low byte first."""
     return crc16(data).to_bytes(2, "little")

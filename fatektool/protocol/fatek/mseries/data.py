@@ -2,8 +2,8 @@
 
 There is no program command: 4F and 50 are FACON's.
 
-53 is listed without a layout. Its answer is taken for FACON's where it has 64 bytes, and marked as assumed;
-of any other length it is kept raw.
+53 is listed without a layout. An answer of 64 bytes is parsed as FACON's, and marked as assumed; of another
+length it is kept as bytes.
 """
 
 from __future__ import annotations

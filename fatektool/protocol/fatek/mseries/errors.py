@@ -1,6 +1,6 @@
-"""The error byte of an M-series answer, in that paper's own words.
+"""The meanings of the error byte of an M-series answer, as in its paper.
 
-M-series paper, section 2.3. It has neither FACON's 3 nor its words for 9.
+M-series paper, section 2.3. It does not have FACON's 3, and another text for 9.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ MEANINGS: Final = {
     0x0A: "illegal address",
 }
 _NEXT: Final = {
-    0x05: "the program in the PLC is damaged: put it in again with the vendor's program",
+    0x05: "the program in the PLC is damaged: load it again with the vendor's software",
     0x06: "the program was locked to a PLC with another ID: load one made for this PLC, or set the ID",
-    0x07: "put in a program that ran on this PLC, with the vendor's program",
-    0x09: "the program wants a function that this PLC does not have: 'fatektool status' shows the model",
+    0x07: "load a program that ran on this PLC, with the vendor's software",
+    0x09: "the program needs a function that this PLC does not have: 'fatektool status' shows the model",
     0x0A: "this PLC has no such element",
 }
 """This project's advice: [E:error-advice]. There are no program commands, so nothing can be restored."""
 
 
 def meaning_of(code: int) -> str:
-    """What an error code means, in words."""
+    """The meaning of an error code."""
     return MEANINGS.get(code, "a code that the M-series paper does not list")
 
 
@@ -39,7 +39,7 @@ def refusal(code: int, command: int, asked: str) -> PlcRefused:
     Args:
         code: 1 to 255.
         command: the command's code.
-        asked: what was asked, in words: ``read registers R12``.
+        asked: the request as text: ``read registers R12``.
     """
     return PlcRefused(
         f"the PLC refused to {asked} ({command:02X}): error {code:X}, {meaning_of(code)}",

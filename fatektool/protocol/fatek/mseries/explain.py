@@ -1,4 +1,4 @@
-"""M-series frames explained."""
+"""Explanations of M-series frames."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ _HEADERS: Final = {QUERY: FrameRole.REQUEST, RESPONSE: FrameRole.ANSWER}
 
 
 class MseriesExplainer(FatekExplainer):
-    """Explains a conversation in the M-series' protocol."""
+    """Explains M-series frames."""
 
     form: ClassVar[str] = "51 10 or 52 10, a length and as many bytes, a CRC, 55 AA"
     binary: ClassVar[bool] = True
-    cut_off: ClassVar[str] = "a frame broke off"
+    cut_off: ClassVar[str] = "an incomplete frame"
 
     def role_of(self, raw: bytes, role: FrameRole) -> FrameRole:
-        """What the header says."""
+        """The role by the header."""
         del role
         return _HEADERS[raw[0]]
 

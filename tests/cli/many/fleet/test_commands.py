@@ -144,9 +144,7 @@ def test_a_header_that_does_not_hold(cli: Cli, plant: Hall) -> None:
     assert cli("fleet", "backup", "--dir", "backups", "--select", "press").code == 1
     done = cli("fleet", "backup", "--dir", "backups", "--select", "press", "--any-header")
     assert done.code == 0
-    assert (
-        "warning: press: the program's header does not hold: byte 0: expected F (46), got X (58)" in done.err
-    )
+    assert "warning: press: invalid header of the program: byte 0: expected F (46), got X (58)" in done.err
 
 
 def test_what_lies_in_the_place(cli: Cli, plant: Hall) -> None:

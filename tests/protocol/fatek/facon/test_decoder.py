@@ -151,7 +151,7 @@ def test_parse_frame_wants_a_whole_frame(raw: bytes) -> None:
 def test_a_stx_inside_begins_anew() -> None:
     broken, whole = decoded(FRAMES[2][:6] + FRAMES[2])
     assert isinstance(broken, FrameError)
-    assert broken.message == "a frame broke off and another began"
+    assert broken.message == "an incomplete frame, then another beginning"
     assert broken.raw == FRAMES[2][:6]
     assert not isinstance(whole, FrameError)
     assert whole.raw == FRAMES[2]

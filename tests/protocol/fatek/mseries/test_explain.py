@@ -1,4 +1,4 @@
-"""M-series frames explained: every byte in a field, the values named, and no bytes that it fails on."""
+"""Explanations of M-series frames: every byte in a field, the values named, and no bytes that it fails on."""
 
 from __future__ import annotations
 
@@ -108,14 +108,14 @@ def test_status() -> None:
 
 def test_an_answer_alone_has_no_names() -> None:
     (answer,) = explained(response("01 46 00 10 A5 7F C4"))
-    assert data_fields(answer)[1] == ("values", "10A57FC4", "of elements that the request names")
+    assert data_fields(answer)[1] == ("values", "10A57FC4", "of the elements in the request")
 
 
 def test_an_answer_that_does_not_fit_its_request_is_called_so() -> None:
     late = MSERIES.encode_answer(1, ReadRegisters(Element("R", 0), 1), (7,))
     right = MSERIES.encode_answer(1, R12, (1, 2, 3))
     _, stray, answer = explained(MSERIES.encode(1, R12), late, right)
-    assert stray.fault == "expected 6 bytes of values, as was asked, got 2"
+    assert stray.fault == "expected 6 bytes of values, as requested, got 2"
     assert [field[0] for field in data_fields(answer)[1:]] == ["R12", "R13", "R14"]
 
 
@@ -154,7 +154,7 @@ def test_noise_and_what_is_cut_off() -> None:
         (FrameRole.ANSWER, FRAMES[1]),
         (FrameRole.BROKEN, FRAMES[2][:7]),
     ]
-    assert found[-1].fault == "a frame broke off"
+    assert found[-1].fault == "an incomplete frame"
 
 
 @pytest.mark.parametrize("command", [0x00, 0x4F, 0x50, 0x99])
@@ -190,7 +190,7 @@ def test_right_in_crc_and_wrong_in_content(payload: str) -> None:
 
 def test_stations() -> None:
     (everyone,) = explained(query("00 41 00"))
-    assert everyone.fields[3].meaning == "all (broadcast), no PLC answers"
+    assert everyone.fields[3].meaning == "broadcast to all PLCs, none answers"
     (nobody,) = explained(query("FF 40"))
     assert nobody.fields[3].meaning == "255, any PLC, or an Ethernet module"
 

@@ -123,7 +123,7 @@ def test_a_frame_that_waits_for_bytes_that_do_not_come() -> None:
     assert decoder.expect_no_more()
     error, frame = drained(decoder)
     assert isinstance(error, FrameError)
-    assert (error.message, error.raw) == ("a frame broke off", bytes.fromhex("52 10 01 C5"))
+    assert (error.message, error.raw) == ("an incomplete frame", bytes.fromhex("52 10 01 C5"))
     assert not isinstance(frame, FrameError)
     assert frame.raw == STATUS
     assert not decoder.expect_no_more()
@@ -204,7 +204,7 @@ def test_one_lost_byte_never_costs_the_next_frame(at: int) -> None:
 def test_a_wrong_end() -> None:
     error, frame = decoded(STATUS[:-2] + b"\xaa\x55" + STATUS, codec=MSERIES)
     assert isinstance(error, FrameError)
-    assert error.message == "no end where the length says: expected 55 AA, got AA 55"
+    assert error.message == "after the length: expected 55 AA, got AA 55"
     assert not error.checksum
     assert frame.raw == STATUS
 
@@ -231,7 +231,7 @@ def test_an_echo_is_no_answer_though_its_payload_is_one(request_: Request[Any], 
     assert asks[1:] == answers[1:]
     assert not MSERIES.echo_may_pass(request_)
     (echo,) = frames([asks], MSERIES)
-    with pytest.raises(FrameError, match=r"a request \(51\), expected an answer \(52\)"):
+    with pytest.raises(FrameError, match=r"expected an answer \(52\), got a request \(51\)"):
         MSERIES.parse_answer(request_, echo)
 
 
