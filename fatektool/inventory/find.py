@@ -101,4 +101,10 @@ def plc_named(word: str, named: Path | None) -> PlcEntry | None:
     found = whole_inventory(path)
     if word not in found.plcs and os.path.lexists(word):
         return None
-    return found.named(word)
+    try:
+        return found.named(word)
+    except UsageError as error:
+        from fatektool.transport.nearly import meant
+
+        error.hint = meant(word) or error.hint
+        raise

@@ -97,7 +97,11 @@ class Target(NamedTuple):
     def _net(cls, text: str, default_port: int | None) -> Target:
         match = _NET.fullmatch(text)
         if match is None:
-            raise UsageError(f"target {text!r}: expected tcp://host:port or udp://host:port", hint=_WAYS)
+            from fatektool.transport.nearly import meant
+
+            raise UsageError(
+                f"target {text!r}: expected tcp://host:port or udp://host:port", hint=meant(text) or _WAYS
+            )
         port = int(match[4]) if match[4] else default_port
         if port is None:
             raise UsageError(

@@ -6,6 +6,7 @@ import errno
 from typing import TYPE_CHECKING
 
 from fatektool.errors import FatektoolError, LineError, PortBusy, TransportClosed, UsageError
+from fatektool.transport.nearly import meant, next_step
 
 if TYPE_CHECKING:
     from fatektool.transport.base import LineSettings
@@ -33,10 +34,7 @@ def open_error(target: str, settings: LineSettings, error: Exception) -> Fatekto
             hint="close that program (a terminal, the vendor's software), or wait and run again",
         )
     if number == errno.ENOENT or "FileNotFoundError" in text:
-        return LineError(
-            f"{target}: no such port",
-            hint="check that the adapter is plugged in; 'fatektool ports' lists the serial ports",
-        )
+        return LineError(f"{target}: no such port", hint=next_step(target))
     if number in {errno.EACCES, errno.EPERM} or "PermissionError" in text:
         return LineError(
             f"{target}: no permission to use the port",
@@ -94,7 +92,8 @@ def _wrong_url(target: str, error: Exception) -> UsageError | None:
     if isinstance(error, ValueError) and str(error).startswith("invalid URL, protocol"):
         return UsageError(
             f"{target}: unknown kind of target: {target.partition('://')[0]}://",
-            hint="expected a serial port such as /dev/ttyUSB0 or COM3, tcp://, udp://, rfc2217://, "
+            hint=meant(target)
+            or "expected a serial port such as /dev/ttyUSB0 or COM3, tcp://, udp://, rfc2217://, "
             "socket://, hwgrep://, spy:// or sim:",
         )
     if any(isinstance(each, KeyError) for each in (error, error.__context__)):
