@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 INTERRUPTED = 130
 CUT_SHORT = 141
-"""As a shell tells of a program that wrote to a closed pipe."""
+"""The exit code of a program that wrote to a closed pipe, as shells report it."""
 
 _OUTPUT_LOST = {errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EFBIG, errno.EBADF}
 

@@ -135,8 +135,8 @@ def _values(words: Words) -> tuple[Element, tuple[int, ...]]:
     for place, (element, _) in enumerate(pairs):
         if element != first.after(place):
             raise UsageError(
-                f"{element}: expected {first.after(place)}, the neighbour of those before",
-                hint="48 and 49 take elements that are no neighbours",
+                f"{element}: expected {first.after(place)}, the next address",
+                hint="use 48 or 49 for elements that are not consecutive",
             )
     return first, tuple(value for _, value in pairs)
 

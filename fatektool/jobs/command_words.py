@@ -58,7 +58,7 @@ NAMES: Final = {command.name.lower().replace("_", "-"): command for command in C
 
 
 def parse_code(text: str) -> int:
-    """A command's code as it stands in a frame: two hex digits, or a command's name.
+    """A command's code as in a frame: two hex digits, or a command's name.
 
     Raises:
         UsageError: it is neither.
@@ -88,7 +88,7 @@ def parse_command(command: str, *words: str, answer: bool = False, m_series: boo
     known = Command(code) if code in FORMS else MODBUS_FUNCTIONS.get(code)
     if known is None:
         raise UsageError(
-            f"command: {code:02X} is in no paper", hint="--data gives any command its data field in hex"
+            f"command: {code:02X} is not documented", hint="--data takes the data field of any command in hex"
         )
     form = FORMS[known]
     try:

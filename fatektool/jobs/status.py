@@ -64,7 +64,7 @@ def read_status(plc: Plc, *, brief: bool = False) -> StatusReport:
 
 
 def brief_or_none(plc: Plc) -> BriefStatus | None:
-    """The answer to 40, which nobody asked for: None where the protocol lacks it or the PLC refuses it.
+    """The answer to 40, as additional information: None where the protocol lacks it or the PLC refuses it.
 
     Raises:
         LineError: no answer.

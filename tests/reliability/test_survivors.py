@@ -68,7 +68,7 @@ def test_a_plc_that_stores_something_else_is_not_called_unchanged(tmp_path: Path
 
     bench.tap.after = garble
     error = unfinished(bench, tmp_path)
-    assert "acknowledged page 0-7, but holds something else there" in error.message
+    assert "acknowledged page 0-7, but has other data there" in error.message
     assert "page 0-7: uncertain" in error.message
     assert error.details["pages_uncertain"] == list(range(PAGES))
 
@@ -178,7 +178,7 @@ def test_and_not_one_more() -> None:
 def test_trouble_in_an_earlier_pass_does_not_excuse_two_clean_ones_that_differ() -> None:
     bench = Bench(OLD)
     unsteady(bench, 99, {1})
-    with pytest.raises(DataError, match="two passes over a clean line read different programs: page 7"):
+    with pytest.raises(DataError, match="two passes without line errors read different programs: page 7"):
         backup(bench.plc)
 
 

@@ -201,7 +201,7 @@ def test_what_is_left_out_of_a_series_is_said(press: Press, cli: Cli) -> None:
     assert cli("snapshot", "R5", "--append", "s.ndjson", "--report", "x.html", "--force").code == 0
     page = report_of(press.folder)
     assert facts(page)["Rounds read"].figures == [3]
-    assert "Snapshots in s.ndjson that are left out here: 2 of another PLC and 2 not whole." in page.text
+    assert "Snapshots in s.ndjson that are left out here: 2 of another PLC and 2 incomplete." in page.text
 
 
 def test_a_folder_of_another_format_has_no_series(press: Press, cli: Cli) -> None:
@@ -218,7 +218,7 @@ def test_a_folder_of_another_format_has_no_series(press: Press, cli: Cli) -> Non
 @pytest.mark.parametrize(
     ("name", "said"),
     [
-        ("old.json", "old.json is there already, is no report, and is kept; name another file"),
+        ("old.json", "old.json exists and is not a report: it is not replaced; name another file"),
         ("no/x.html", "no is no folder"),
         (".", ". is a folder, expected a file name"),
         ("/dev/null", "is a device"),

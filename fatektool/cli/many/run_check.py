@@ -39,7 +39,7 @@ def run_check(
         voice: prints notes about the line.
         limit: ends the check.
         shared: keeps the line open for the next PLC on it.
-        progress: told of each page.
+        progress: called for each page.
     """
     return check_plc(
         plan,

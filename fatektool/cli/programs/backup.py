@@ -35,10 +35,10 @@ if TYPE_CHECKING:
     "--known",
     type=PATH,
     metavar="FILE",
-    help="A backup of this PLC: a page that is as in it is read once. Default: FILE that --force replaces.",
+    help="A backup of this PLC: equal pages are read once.  [default: the FILE that --force replaces]",
 )
 @click.option("--any-header", is_flag=True, help="Keep an image with an invalid header, and mark it.")
-@click.option("--raw", type=PATH, metavar="FILE.bin", help="Also write the bare pages.")
+@click.option("--raw", type=PATH, metavar="FILE.bin", help="Also write the pages, as binary.")
 @connection_options
 def backup_command(
     connection: Connection,
@@ -53,9 +53,9 @@ def backup_command(
 ) -> None:
     """Read the PLC's program into FILE.
 
-    Every page is read twice and compared, the header is checked, and FILE is whole or absent. A page that is
-    as in a backup on file is read once. Without FILE the name is made of station and time; - is standard
-    output. The PLC may run.
+    Every page is read twice and compared, and the header is checked. Pages that are equal to those of an
+    existing backup are read once. FILE is written completely or not at all; without FILE its name has station
+    and time; - is standard output. The PLC can be in RUN.
     """
     path = file or Path(f"fatek-st{connection.address.station:02}-{stamp(utc())}.json")
     together("force", holds=not is_standard(path) or raw is not None, needs="a file")
@@ -99,5 +99,5 @@ def _write_raw(raw: Path, found: Backup, path: Path, *, overwrite: bool) -> None
         write_whole(raw, found.program.data, overwrite=overwrite)
     except FatektoolError as error:
         if not is_standard(path):
-            error.message = f"{path} is saved, but the bare pages are not: {error.message}"
+            error.message = f"{path} is saved, but its binary pages are not: {error.message}"
         raise

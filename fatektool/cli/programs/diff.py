@@ -39,7 +39,7 @@ def diff_command(
     from fatektool.project.comparison import compare_files
 
     if is_standard(a) and is_standard(b):
-        raise UsageError("standard input holds one program: expected - for one of the two")
+        raise UsageError("standard input has one program: give - for only one of the two")
     one, other = program_file(a, voice, encoding), program_file(b, voice, encoding)
     require_comments(comments, one, other)
     named = comments_from(comments, voice, encoding)

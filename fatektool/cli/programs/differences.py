@@ -40,7 +40,7 @@ def show_differences(
         found: the comparison.
         voice: prints.
         report: the page to write; None for none.
-        comments: of elements, to stand beside the instructions.
+        comments: of elements, shown beside the instructions.
     """
     document = diff_document(a, b, found, comments)
     code = ", same code" if found.same_code else ""
@@ -91,7 +91,7 @@ def program_lines(
         same: the line for two programs that are the same.
         a: what the first is called.
         b: what the second is called.
-        comments: of elements, to stand beside the instructions.
+        comments: of elements, shown beside the instructions.
     """
     yield from difference_lines(found.pages, same, a, b)
     if found.networks is None:

@@ -29,7 +29,7 @@ _UNITS: Final = ("main", "sub")
 
 
 def backup_summary(backup: Backup) -> dict[str, Any]:
-    """What a backup holds, without its pages."""
+    """The contents of a backup, without its pages."""
     source = backup.source
     return {
         "created": backup.created,
@@ -71,7 +71,7 @@ def inspect_document(found: ProgramFile) -> dict[str, Any]:
 
 
 def _project_summary(found: ProgramFile) -> dict[str, Any]:
-    """What a project holds, without its image."""
+    """The contents of a project, without its image."""
     project, comments, code = found.project, found.comments, found.code
     assert project is not None  # noqa: S101  # the caller's condition
     known = found.header.family is not None
@@ -255,9 +255,9 @@ def xref_document(
 
     Args:
         found: the program.
-        reference: who reads and who writes each element of it.
+        reference: where each element of it is read and written.
         elements: those that are shown.
-        findings: what is odd about these.
+        findings: about these elements.
         comments: of elements.
     """
     return {

@@ -1,4 +1,4 @@
-"""What a backup or a project holds, as rows of name and value."""
+"""The contents of a backup or project, as rows of name and value."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ if TYPE_CHECKING:
 
 
 def backup_rows(found: Backup, file: str) -> Iterator[tuple[str, object]]:
-    """What a backup holds; ``file`` is what it is called."""
+    """The contents of a backup; ``file`` is its name."""
     program, source = found.program, found.source
     used = sum(page != b"\xff" * len(page) for page in program.pages[1:])
     status = found.plc["status"]
-    yield "file", f"{file}: whole, hash and header checked"
+    yield "file", f"{file}: complete, hash and header checked"
     yield "created", f"{found.created} by {found.tool}"
     yield (
         "source",
-        f"station {source.station} on {source.target}, {source.protocol}, {source.line or 'no line'}",
+        f"station {source.station} on {source.target}, {source.protocol}, {source.line or 'no serial line'}",
     )
     yield "PLC then", "RUN" if status.get("running") else "STOP"
     header = program.header
@@ -34,30 +34,30 @@ def backup_rows(found: Backup, file: str) -> Iterator[tuple[str, object]]:
 
 
 def project_rows(found: ProgramFile) -> Iterator[tuple[str, object]]:
-    """What a project holds."""
+    """The contents of a project."""
     project, comments, code = found.project, found.comments, found.code
     assert project is not None  # noqa: S101  # the caller's condition
     yield "file", f"{found.name}: a WinProladder project, cipher solved"
     yield "project", comments.name or "no name"
     yield "model", project.model or comments.model or "not named"
     header = found.header
-    yield "header", header.text() if header.family is not None else "none known (FBE)"
+    yield "header", header.text() if header.family is not None else "not known (FBE)"
     if header.checksum is not None:
         yield "checksum", _sum_words(header.checksum)
     if code is not None:
-        unknown = f", {code.unknown_words} words not understood" if code.unknown_words else ""
+        unknown = f", {code.unknown_words} unknown words" if code.unknown_words else ""
         yield "code", f"{len(code.words)} words in {len(code.networks)} networks{unknown}"
     for place, name in comments.units.items():
         yield "unit", f"{name}, from byte {place:04X}"
-    sure = "" if comments.sure else ", which does not decode all"
+    sure = "" if comments.sure else ", which does not decode all of them"
     texts = f"{len(comments.elements)} of elements, {len(comments.networks)} of networks"
     yield "comments", f"{texts}, {comments.code_page}{sure}"
     yield "sha256", f"{found.sha256} of the image"
 
 
 def _sum_words(found: Sum) -> str:
-    """A checksum, and whether it holds."""
+    """A checksum, and whether it is correct."""
     if found.valid:
-        return f"{found.stored:04X}, holds"
-    computed = "not to be computed" if found.computed is None else f"the code's is {found.computed:04X}"
-    return f"{found.stored:04X}, DOES NOT HOLD: {computed}"
+        return f"{found.stored:04X}, correct"
+    computed = "cannot be computed" if found.computed is None else f"that of the code is {found.computed:04X}"
+    return f"{found.stored:04X}, WRONG: {computed}"

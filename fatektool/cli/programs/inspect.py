@@ -1,4 +1,4 @@
-"""``inspect``: what a backup or a project holds."""
+"""``inspect``: the contents of a backup or a project."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ if TYPE_CHECKING:
 
 @click.command("inspect", epilog="Example: fatektool inspect press.json --raw press.bin")
 @click.argument("file", type=PATH)
-@click.option("--raw", type=PATH, metavar="FILE.bin", help="Write the bare pages.")
+@click.option("--raw", type=PATH, metavar="FILE.bin", help="Write the pages, as binary.")
 @click.option("--force", is_flag=True, help="Replace FILE.bin if it exists.")
 @encoding_option
 @voice_options
 def inspect_command(file: Path, voice: Voice, *, raw: Path | None, force: bool, encoding: str | None) -> None:
-    """Show and check what FILE holds, a backup or a WinProladder project. Needs no PLC."""
+    """Show and check the contents of FILE, a backup or a WinProladder project. Needs no PLC."""
     together("force", holds=raw is not None, needs="--raw")
     require_raw_name(raw, file)
     on_file = program_file(file, voice, encoding)

@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 @click.command("listing", epilog="Example: fatektool listing press.json --network 0-9 --comments press.pdw")
 @click.argument("file", type=PATH)
 @click.option(
-    "--network", "wanted", multiple=True, metavar="N|N-M", help="Only these networks; several times."
+    "--network", "wanted", multiple=True, metavar="N|N-M", help="Only these networks; repeat for more."
 )
-@click.option("--words", is_flag=True, help="Show words, and no comments unless named.")
+@click.option("--words", is_flag=True, help="Show the words in hex, without comments.")
 @click.option("--ladder", is_flag=True, help="Draw the networks, as wide as the terminal.")
 @comments_options
 @inventory_option
@@ -48,12 +48,11 @@ def listing_command(
 ) -> None:
     """List the program in FILE, a backup or a WinProladder project, in the vendor's mnemonics. Needs no PLC.
 
-    What is not the vendor's own word has ~ before it; what is not known stands there in hex behind ??. A
-    project's comments stand beside its elements; with --words they are left out, so that it can be sent to
-    somebody, unless --comments names them.
+    ~ marks a name that is not the vendor's own, ?? words that are not known, in hex. A project's comments are
+    shown beside its elements; --words leaves them out, unless --comments names a project.
 
-    --ladder draws each network, with the comments under the elements. A wire that ends with a number goes on
-    below at the same number.
+    --ladder draws each network, with the comments under the elements. A wire that ends with a number
+    continues below at the same number.
     """
     apart("ladder", "words", "as_json", why="a drawing has no words; --report draws into a page")
     found = program_file(file, voice, encoding)

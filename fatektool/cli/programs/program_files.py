@@ -1,4 +1,4 @@
-"""Files with a program, as arguments: read, and what is odd about them said."""
+"""Files with a program, as arguments: read, with warnings."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def comments_options(function: F) -> F:
 
 
 def program_file(path: Path, voice: Voice, encoding: str | None = None) -> ProgramFile:
-    """Read a backup or a project, and say what is odd about its comments."""
+    """Read a backup or a project, and warn if its comments cannot be decoded."""
     from fatektool.project.program_file import load_program
 
     found = load_program(path, encoding=encoding)
@@ -77,8 +77,8 @@ def warn_of_code_page(found: ProgramFile, voice: Voice) -> None:
     """Say so if no code page decodes all comments."""
     if not found.comments.sure:
         voice.warn(
-            f"{found.name}: no code page decodes all comments; they are shown in latin-1: name theirs with "
-            "--encoding"
+            f"{found.name}: no code page decodes all comments; they are shown in latin-1: give the right one "
+            "with --encoding"
         )
 
 
@@ -193,7 +193,7 @@ def comments_of_entry(entry: PlcEntry, voice: Voice, encoding: str | None = None
 
 
 def warn_of_program(found: ProgramFile, voice: Voice) -> None:
-    """Say what does not hold of a file's program and what is odd, of what is known of its header."""
+    """Warn of what is invalid or unusual in a file's program, if its header is known."""
     from fatektool.cli.shared.image_words import warn_of_image
 
     if found.project is None or found.header.family is not None:  # an FBE's image has no known header
@@ -207,8 +207,8 @@ def warn_of_code(found: ProgramFile, voice: Voice) -> None:
     unknown = code.unknown_words
     if unknown:
         voice.warn(
-            f"{found.name}: {unknown} of {len(code.words)} words of code are not understood and shown as "
-            "they are (??); behind them reading went on at the next word that begins a network"
+            f"{found.name}: {unknown} of {len(code.words)} words of code are not known and shown in "
+            "hex (??); after them the listing continues at the next word that begins a network"
         )
     if not code.words:
         voice.say(f"{found.name}: the program has no code")

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def require_raw_name(raw: Path | None, file: Path) -> None:
-    """Check that ``--raw`` names a file, and not the one that holds the backup.
+    """Check that ``--raw`` names a file, and not that of the backup.
 
     Raises:
         UsageError: it does not.

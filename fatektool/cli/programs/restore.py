@@ -42,10 +42,10 @@ if TYPE_CHECKING:
 @click.command("restore", epilog="Example: fatektool restore press.json -p /dev/ttyUSB0 --stop --run")
 @click.argument("file", type=PATH)
 @click.option("--stop", is_flag=True, help="STOP a running PLC. Make the machine safe first.")
-@click.option("--run", is_flag=True, help="RUN the PLC again when the program is read back and verified.")
+@click.option("--run", is_flag=True, help="RUN the PLC after the program is read back and verified.")
 @click.option("--changed-only", is_flag=True, help="Write only the pages that differ.")
 @click.option("--single-pass", is_flag=True, help="Read the previous program once instead of twice.")
-@click.option("--any-header", is_flag=True, help="Restore an image that was kept with --any-header.")
+@click.option("--any-header", is_flag=True, help="Restore an image that was saved with --any-header.")
 @write_options("program", "backup")
 @connection_options
 def restore_command(
@@ -108,7 +108,7 @@ def _backup_in(file: Path) -> Backup:
     data = read_bounded(file, LARGEST_FILE)
     if is_project(data):
         raise UsageError(
-            f"{file} is a WinProladder project, and restore takes backups alone: what WinProladder changes "
+            f"{file} is a WinProladder project, and restore takes only backups: what WinProladder changes "
             "when it loads a project into a PLC is not known",
             hint="load it with WinProladder; 'fatektool verify' and 'diff' compare a project",
             file=str(file),
@@ -121,7 +121,7 @@ def _offer(
 ) -> Offer:
     """The restore as it is shown; where the program is in the PLC already, the question is about RUN."""
     if not plan.pages:
-        question = f"The PLC holds the program on file already. RUN {here.name}?"
+        question = f"The PLC already has the program of FILE. RUN {here.name}?"
         return Offer(writing, here, rows, [], question, "")
     rows = [*rows, ("time", pace.time_of(len(plan.pages) + len(plan.wanted.pages)))]
     question = f"Write the program into {here.name}?"

@@ -39,7 +39,7 @@ def verify_command(
 ) -> int:
     """Compare the PLC's program with FILE, a backup or a WinProladder project: exit 0 if the same, 1 if not.
 
-    What seems to differ is read twice. The PLC may run.
+    Pages that differ are read again. The PLC can be in RUN.
     """
     on_file = program_file(file, voice, encoding)
     texts = on_file.element_comments
@@ -55,7 +55,7 @@ def verify_command(
     count = len(found.a.pages)
     same = f"same: the PLC's program is the one in {file}, {count} pages"
     if found.pages.b_has_more:
-        voice.warn(f"the PLC has more than the {count} pages of {file}: page {count} and on are not compared")
+        voice.warn(f"the PLC has more than the {count} pages of {file}: the rest is not compared")
     if report is not None:
         from fatektool.report.program import verify_report
 

@@ -1,4 +1,4 @@
-"""``xref``: who reads and who writes each element."""
+"""``xref``: where each element is read and written."""
 
 from __future__ import annotations
 
@@ -45,10 +45,10 @@ def xref_command(
     encoding: str | None,
     inventory: Path | None,
 ) -> None:
-    """Show who reads and who writes each of ELEMENTS in the program FILE; without ELEMENTS all. Needs no PLC.
+    """Show where each of ELEMENTS is read and written in the program FILE, or each element. Needs no PLC.
 
-    And what is odd: an OUT in two places, what is written and never read, what is read and never written.
-    What the PLC itself or a display uses looks like that too.
+    Also listed are elements with OUT in two places, elements that are written and never read, and elements
+    that are read and never written. Elements that the PLC itself or a display uses can be among them.
     """
     asked = [element.upper() for element in elements]
     for element in asked:

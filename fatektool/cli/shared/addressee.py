@@ -40,8 +40,8 @@ class Addressee:
     Attributes:
         target: as the user named it.
         station: 1 to 254.
-        model: in words; None where nobody says it.
-        running: None where nobody says it.
+        model: in words; None if not known.
+        running: None if not known.
     """
 
     target: str
@@ -56,7 +56,7 @@ class Addressee:
 
     @property
     def mode(self) -> str | None:
-        """``RUN`` or ``STOP``; None where nobody says it."""
+        """``RUN`` or ``STOP``; None if not known."""
         return None if self.running is None else "RUN" if self.running else "STOP"
 
     @property
@@ -122,25 +122,25 @@ class Pace:
 
     @property
     def passed_s(self) -> float:
-        """How long it is ago."""
+        """Seconds since it began."""
         return self._link.transport.clock() - self._began
 
     def time_of(self, exchanges: int) -> str:
-        """How long so many more will take, in words."""
+        """How long this number of further exchanges will take, in words."""
         done = self._link.counters.exchanges - self._before
         seconds = self.passed_s / max(1, done) * exchanges
         return spent(seconds) if seconds < 1 else f"about {spent(seconds)}"
 
 
 def spent(seconds: float) -> str:
-    """A time as people say it."""
+    """A time in words."""
     if seconds < 1:
         return "under 1 s"
     return f"{seconds:.0f} s" if seconds < _SHORT_S else f"{seconds / 60:.0f} min"
 
 
 def look(plc: Plc) -> Addressee:
-    """Ask a PLC what it is and how it is (40), where its protocol has that; what does not come is None."""
+    """Read model and mode of a PLC (40), if its protocol has that; what is not known is None."""
     try:
         return with_status(plc, brief_or_none(plc))
     except LineError:
@@ -148,7 +148,7 @@ def look(plc: Plc) -> Addressee:
 
 
 def with_status(plc: Plc, brief: BriefStatus | None) -> Addressee:
-    """The PLC with what it answered to 40; None for no answer."""
+    """The PLC with its answer to 40; None for no answer."""
     if brief is None:
         return Addressee(plc.target, plc.link.station)
     model = brief.model
@@ -177,7 +177,7 @@ def agree(
         unchanged: what is said if the answer is no.
 
     Raises:
-        UsageError: the user does not agree, or there is nobody to ask.
+        UsageError: the user does not agree, or there is no terminal to ask on.
         KeyboardInterrupt: Ctrl-C at the question; has ``unchanged``.
     """
     voice.require_answer(yes=yes)

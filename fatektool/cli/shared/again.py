@@ -46,7 +46,7 @@ def command_again(connection: Connection, *added: str, anywhere: bool = False) -
 def _parsed(
     command: click.Command, words: Sequence[str]
 ) -> Iterator[tuple[click.Parameter | None, str, str]]:
-    """The words of a command line: parameter, what stands before its value, and the value.
+    """The words of a command line: parameter, the text before its value, and the value.
 
     ``--safety-dir=x`` gives ``--safety-dir=`` and ``x``, and ``--safety-dir x`` both words. A flag is a value
     without a parameter.

@@ -47,7 +47,7 @@ class Connection(NamedTuple):
         """Open the line to one PLC.
 
         Args:
-            voice: shows what a curious user may want to know.
+            voice: prints details.
             needs: commands that the protocol must have.
             writes: True if something is to be written, which a read-only line refuses before it is opened.
             limit: ends everything on this line when it is over.
@@ -82,7 +82,7 @@ class Connection(NamedTuple):
         return plc
 
     def open_line(self, voice: Voice, stack: ExitStack) -> Transport:
-        """Open the line alone, to ask more than one PLC on it; ``stack`` closes it."""
+        """Open only the line, to ask more than one PLC on it; ``stack`` closes it."""
         from fatektool.connection import open_line
         from fatektool.transport.patience import Patience
 

@@ -1,4 +1,4 @@
-"""What is odd about a program image, in words, for every command that shows one."""
+"""What is unusual in a program image, in words, for every command that shows one."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def warn_of_image(program: Program, voice: Voice) -> None:
-    """Say what does not hold of an image, what is odd, and what the PLC did not give."""
+    """Warn of what is invalid or unusual in an image, and of pages that the PLC refused."""
     for fault in program.header_faults:
         voice.warn(f"invalid header of the program: {fault}")
     for odd in program.header.odd:

@@ -29,12 +29,12 @@ direction."""
 
 
 def visible(text: str) -> str:
-    """Text from a file, a PLC or a name: what a terminal would obey stands there as a code."""
+    """Text from a file, a PLC or a name: what a terminal would obey is shown as a code."""
     return text.translate(_OBEYED)
 
 
 def print_stderr(text: str) -> None:
-    """Print a line on stderr. That nobody hears it any more is no reason to leave a PLC half written."""
+    """Print a line on stderr. An error is ignored: a write into a PLC must go on without a reader."""
     with contextlib.suppress(OSError):
         click.echo(visible(text), err=True)
 
@@ -48,13 +48,13 @@ def print_json(document: dict[str, Any]) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Voice:
-    """How a command talks.
+    """Where and how a command prints.
 
     Attributes:
         json: one JSON document on stdout instead of words.
         quiet: nothing on stderr but errors.
         verbose: more on stderr.
-        name: stands before what is told of one PLC among many.
+        name: printed before each message about one of many PLCs.
     """
 
     json: bool = False
@@ -63,12 +63,12 @@ class Voice:
     name: str = ""
 
     def say(self, text: str) -> None:
-        """Tell the user something, on stderr."""
+        """Print a message on stderr."""
         if not self.quiet:
             print_stderr(self.name + text)
 
     def detail(self, text: str) -> None:
-        """Tell a curious user something, on stderr."""
+        """Print a detail on stderr, with ``-v``."""
         if self.verbose:
             print_stderr(self.name + text)
 
@@ -129,12 +129,12 @@ class Voice:
 
 
 def shows_progress(voice: Voice) -> bool:
-    """True if somebody watches, and wants to."""
+    """True on a terminal, unless ``-q`` is given."""
     return not voice.quiet and sys.stderr.isatty()
 
 
 def can_ask() -> bool:
-    """True if there is somebody to answer a question."""
+    """True if a user can answer a question."""
     return sys.stdin.isatty() and sys.stderr.isatty()
 
 

@@ -1,6 +1,6 @@
 """Options that depend on each other: what would have no effect is refused, never dropped.
 
-Only what stands on the command line counts. A default, an environment variable or the inventory holds for
+Only what is given on the command line counts. A default, an environment variable or the inventory holds for
 many commands, and may be without effect in one.
 """
 
@@ -13,7 +13,7 @@ from fatektool.errors import UsageError
 
 
 def given(name: str) -> str | None:
-    """The option as it is written, such as ``--format``, if it stands on the command line; else None."""
+    """The option as it is written, such as ``--format``, if it is on the command line; else None."""
     context = click.get_current_context()
     if context.get_parameter_source(name) is not ParameterSource.COMMANDLINE:
         return None

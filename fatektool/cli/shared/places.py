@@ -30,7 +30,7 @@ def force_option(function: F) -> F:
         context.meta[_META] = value
 
     return click.option(
-        "--force", is_flag=True, expose_value=False, callback=keep, help="Replace files that are there."
+        "--force", is_flag=True, expose_value=False, callback=keep, help="Replace existing files."
     )(function)
 
 
@@ -60,7 +60,7 @@ def require_folder_for(path: Path, voice: Voice) -> Path:
         UsageError: it cannot be made, is no folder, or is not writable.
     """
     if make_folder(path):
-        voice.say(f"made the folder {path}")
+        voice.say(f"created the folder {path}")
     return path
 
 

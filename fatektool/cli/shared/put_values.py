@@ -72,7 +72,7 @@ def put_values(plc: Plc, plan: ValuesPlan, offer: Offer, name: str) -> Written:
 
 
 def result_lines(plan: ValuesPlan, done: Written, offer: Offer, *details: str) -> Iterator[str]:
-    """What is said in the end.
+    """The result in words.
 
     Args:
         plan: what was to be written.
@@ -92,13 +92,13 @@ def result_lines(plan: ValuesPlan, done: Written, offer: Offer, *details: str) -
 
 
 def change_line(change: RegisterChange) -> str:
-    """What an element holds, and what it shall hold."""
+    """The value of an element, and its new value."""
     element = change.element
     return f"{element}  {_text(element, change.before)} -> {_text(element, change.after)}"
 
 
 def not_taken_words(done: Written) -> dict[str, str]:
-    """What did not take, in words, by element."""
+    """Values that the PLC did not keep, in words, by element."""
     return {str(each.element): each.words(partial(_text, each.element)) for each in done.not_taken}
 
 

@@ -1,7 +1,7 @@
 """``--report FILE.html``: what a command found, as a page to look at.
 
-A report that is there is kept unless ``--force`` replaces it. Any other file is kept in any case: a slip of
-the hand must not cost a backup. That is looked at before a PLC is asked, and again before FILE is written.
+An existing report is kept unless ``--force`` replaces it. Any other file is always kept: a wrong name
+must not destroy a backup. That is looked at before a PLC is asked, and again before FILE is written.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def report_option(function: F) -> F:
 
     @force_option
     @click.option(
-        "--report", type=PATH, metavar="FILE.html", help="Also write a page to look at, to mail, to print."
+        "--report", type=PATH, metavar="FILE.html", help="Also write an HTML report, to view, mail or print."
     )
     @wraps(function)
     def with_report(*args: Any, report: Path | None, **rest: Any) -> Any:
@@ -52,7 +52,7 @@ def write_report(path: Path, html: str) -> None:
     """Put a report into its file, whole or not at all.
 
     Raises:
-        UsageError: the place cannot be written, or holds something else than a report.
+        UsageError: the file cannot be written, or is not a report.
         DataError: the disk is full or broken.
     """
     _require_report(path)
@@ -66,7 +66,7 @@ def watch_report(path: Path | None, plc: Plc, voice: Voice) -> Iterator[Rounds |
     Args:
         path: where to; None for no report, and then nothing is gathered.
         plc: the PLC.
-        voice: is told if the report of a series that failed cannot be written: the failure comes first.
+        voice: warns if the report of a failed series cannot be written: the failure is more important.
     """
     if path is None:
         yield None
@@ -97,7 +97,7 @@ def write_snapshot_report(path: Path, snapshot: Snapshot, series: Path | None) -
         path: where to.
         snapshot: the snapshot.
         series: the folder or NDJSON file to which it was added, and whose snapshots are shown with it; None
-            for the one alone.
+            for only this one.
 
     Raises:
         UsageError: as for ``write_report``; or the series cannot be read.
@@ -121,7 +121,7 @@ def write_snapshot_report(path: Path, snapshot: Snapshot, series: Path | None) -
 
 
 def _said(left_out: LeftOut, series: Path | None) -> str:
-    counts = {"of another PLC": left_out.foreign, "not whole": left_out.broken}
+    counts = {"of another PLC": left_out.foreign, "incomplete": left_out.broken}
     named = " and ".join(f"{count} {what}" for what, count in counts.items() if count)
     return f"Snapshots in {series} that are left out here: {named}." if named else ""
 
@@ -130,7 +130,7 @@ def _require_report(path: Path) -> None:
     """Check that a report can be put here, and that nothing else is lost by it.
 
     Raises:
-        UsageError: it cannot, or another kind of file lies there.
+        UsageError: it cannot, or there is another kind of file.
     """
     from fatektool.report.page import LONGEST_START, is_report
 
@@ -146,5 +146,5 @@ def _require_report(path: Path) -> None:
         raise file_error("look at", path, error) from error
     if start and not is_report(start.decode(errors="replace")):
         raise UsageError(
-            f"{path} is there already, is no report, and is kept", hint="name another file", file=str(path)
+            f"{path} exists and is not a report: it is not replaced", hint="name another file", file=str(path)
         )

@@ -52,7 +52,7 @@ def paced_rounds(
         plc: the PLC.
         read: reads one round.
         pace: how often, and how many.
-        failed: is told of each round that failed.
+        failed: is called for each round that failed.
         voice: warns of them; many in a row, or the first of all, then end it. None goes on for ever.
         sleep: waits; it may raise to end the rounds. None for ``time.sleep``.
         clock: seconds.

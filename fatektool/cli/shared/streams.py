@@ -13,7 +13,7 @@ import sys
 
 
 class Output(io.TextIOWrapper):
-    """Standard output, which takes what it is given, also once nobody reads it any more: ``cut`` tells."""
+    """Standard output that can be written also after its reader is gone: ``cut`` is true then."""
 
     cut = False
 
@@ -77,5 +77,5 @@ def mend_streams() -> None:
 
 
 def reader_is_gone() -> bool:
-    """True if nobody reads standard output any more, so that who prints without end may end."""
+    """True if the reader of standard output is gone: a command that prints without end can end."""
     return isinstance(sys.stdout, Output) and sys.stdout.cut

@@ -108,7 +108,7 @@ class Writing:
         return RecordMark(self.record, begun, self.voice)
 
     def forget(self) -> None:
-        """The PLC holds all that was to be written: remove the record, if an earlier run left one."""
+        """The PLC has all that was to be written: remove the record, if an earlier run left one."""
         forget(self.record, self.voice)
 
 

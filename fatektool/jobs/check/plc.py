@@ -8,7 +8,7 @@ running                CRITICAL    in RUN or STOP, as expected
 ladder checksum        CRITICAL    that of the PLC's own status
 watchdog               CRITICAL    the same
 battery                WARNING     the same
-emergency stop         WARNING     the same: somebody pressed it, the PLC itself is ok
+emergency stop         WARNING     the same: it was pressed, the PLC itself is ok
 restore                CRITICAL    none into this PLC was left unfinished, as far as this user's records say
 write of values        WARNING     the same: some values are the previous ones, others new
 program                CRITICAL    word for word that of the reference; UNKNOWN if either cannot be read
@@ -81,7 +81,7 @@ def check_plc(
         connect: opens the line; what fails there is a fact too.
         unfinished: gives the writes into this PLC that did not complete.
         now: the present.
-        progress: told of each page.
+        progress: called for each page.
     """
     found = CheckResult()
     try:
@@ -108,7 +108,7 @@ def _check_plc(
     reference: Path | None,
     progress: Progress = ignore,
 ) -> None:
-    """Check a PLC's status, then its program; ``found`` gets the facts as far as the line holds."""
+    """Check a PLC's status, then its program; ``found`` gets the facts until the line fails."""
     clock = plc.link.transport.clock
     began = clock()
     found.flags = flags = plc.brief_status().flags
@@ -176,7 +176,7 @@ def check_backup(path: Path, found: CheckResult, *, max_age_s: float | None, now
     limit = "" if max_age_s is None else f"{max_age_s:.0f}"
     found.figures["backup_age"] = f"{max(0.0, age):.0f}s;{limit};;0"
     if age < -_CLOCKS_APART_S:
-        found.add(State.WARNING, f"backup of the FUTURE, {backup.created}: a clock is wrong")
+        found.add(State.WARNING, f"backup DATED IN THE FUTURE, {backup.created}: a clock is wrong")
     elif max_age_s is not None and age > max_age_s:
         found.add(State.WARNING, f"backup {age_words(age)} OLD, expected at most {age_words(max_age_s)}")
     else:

@@ -32,7 +32,7 @@ _STATES: Final = {
 
 @dataclass(frozen=True, slots=True)
 class RegisterChange:
-    """An element that will be written: what it holds, and what it shall hold; raw, unsigned."""
+    """An element that will be written: its value and its new value; raw, unsigned."""
 
     element: Element
     before: int

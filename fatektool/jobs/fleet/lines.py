@@ -26,7 +26,7 @@ def line_name(address: PlcAddress, name: str, addresses: dict[str, str]) -> str:
 
     Args:
         address: the PLC's.
-        name: the PLC's; a fresh simulated PLC shares its line with nobody.
+        name: the PLC's; a new simulated PLC has a line of its own.
         addresses: hosts and their addresses, of ``addresses_of``.
     """
     where = address.where
@@ -41,7 +41,7 @@ def line_name(address: PlcAddress, name: str, addresses: dict[str, str]) -> str:
 def addresses_of(targets: Iterable[str], wait_s: float = _LOOK_UP_S) -> dict[str, str]:
     """The addresses of all hosts that are named by words: two names may be one gateway.
 
-    All are looked up at once. One that is not found in time is left out, and stands for itself then.
+    All are looked up at once. One that is not found in time is left out, and its name is used then.
     """
     gateways = filter(None, (_host(_parsed(target)) for target in targets))
     hosts = {host for host, _ in gateways if not _is_address(host)}

@@ -4,10 +4,9 @@
 
     tasks ──> lines, the longest first ──> N threads, each with a line at a time ──> ended turns
 
-A thread talks to one PLC by the functions that a single command uses. PLCs behind one gateway share its
-connection, as some serve one at a time, and free it late. What a
-PLC's turn may take is limited; an interrupt ends all turns. A line that hangs holds one of the N threads, and
-no other line.
+A thread asks one PLC by the functions that a single command uses. PLCs behind one gateway share its
+connection, as some serve one at a time, and free it late. The time of a PLC's turn is limited; an interrupt
+ends all turns. A line that hangs blocks one of the N threads, and no other line.
 """
 
 from __future__ import annotations
@@ -51,7 +50,7 @@ class Task(Generic[T]):
 
 @dataclass(slots=True, eq=False)
 class Turn(Generic[T]):
-    """One PLC's turn. The thread that has it writes, everybody may look.
+    """One PLC's turn. Only its thread changes it; others may read it.
 
     Attributes:
         task: what is done.

@@ -47,7 +47,7 @@ def answers_heard(result: LoopbackResult) -> int:
 
 
 def framed_with_parity(case: Case) -> bool:
-    """True if what was heard holds a frame once the eighth bits are left out: they were parity."""
+    """True if the received bytes are a frame without their eighth bits: those were parity."""
     noise = case.result.heard.noise
     if not any(byte & 0x80 for byte in noise):
         return False
@@ -61,5 +61,5 @@ def framed_with_parity(case: Case) -> bool:
 
 
 def sample(result: LoopbackResult) -> str:
-    """The first of what was heard and is no frame, in hex."""
+    """The first received bytes that are no frame, in hex."""
     return result.heard.noise[:12].hex(" ").upper() + (" …" if result.heard.noise_bytes > 12 else "")

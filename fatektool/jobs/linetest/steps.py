@@ -1,6 +1,6 @@
-"""Times that come in steps of 16 ms: what a USB adapter does that holds received bytes back.
+"""Times that come in steps of 16 ms: a USB adapter that delays received bytes causes them.
 
-Such an adapter hands on what it has when a timer of 16 ms runs out. Then the answer to a request of 10 bytes
+Such an adapter passes on received bytes when a timer of 16 ms ends. Then the answer to a request of 10 bytes
 and that to one of 100 take whole numbers of steps, whatever their time on the wire. As angles of a circle of
 16 ms the times all point one way, while the wire times point everywhere. Sums of sine and cosine tell that,
 however many times there are (mean resultant length; Mardia and Jupp, Directional Statistics, section 2.3).

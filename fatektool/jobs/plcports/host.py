@@ -1,4 +1,4 @@
-"""Which PLC it is whose communication registers are shown or written, as far as that matters for them."""
+"""The PLC whose communication registers are shown or written, as far as it matters for them."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class LinkHost:
         return is_fbs(self.os_version)
 
     def warnings(self) -> Iterator[str]:
-        """What a user must know before he believes these registers."""
+        """What a user must know about these registers."""
         if self.fbs is False:
             yield (
                 f"this PLC has OS {self.os_version}, so it is no FBs: these registers are documented for the "
@@ -47,8 +47,8 @@ class LinkHost:
                 yield f"{need.what} needs OS {need.version} or later, and this PLC has OS {self.os_version}"
             elif met is None and self.os_version is not None:
                 yield (
-                    f"{need.what} needs OS {need.version} or later; this PLC says OS {self.os_version}, so "
-                    f"it may have {self.os_version}0 to {self.os_version}9: the vendor's software shows which"
+                    f"{need.what} needs OS {need.version} or later; this PLC reports OS {self.os_version}, "
+                    f"so it can have {self.os_version}0 to {self.os_version}9: see the vendor's software"
                 )
             elif met is None:
                 yield f"{need.what} needs OS {need.version} or later, and this PLC's OS is not known"

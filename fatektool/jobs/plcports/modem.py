@@ -1,6 +1,6 @@
 """The modem of port 1, as the PLC's registers set it: read, and set anew.
 
-Of a register that holds two settings the other half stays as it is.
+In a register with two settings the other half is not changed.
 
 FBs link paper, chapter 13, modem::
 

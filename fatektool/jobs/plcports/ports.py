@@ -123,7 +123,7 @@ class ResultReport:
     def next_step(self) -> str | None:
         """What to do about the result code; None where there is nothing to do."""
         if self.kind in TRANSACTIONS and self.state.result.none_yet:
-            return "see that the instruction has run, and that this is its operand WR"
+            return "check that the instruction has run, and that this is its operand WR"
         return next_step(self.state.result.code, self._kinds)
 
     @property
@@ -133,7 +133,7 @@ class ResultReport:
 
     @property
     def code_alone(self) -> bool:
-        """True for a kind whose WR+0 holds a result code and nothing else, with WR+1 for internal use."""
+        """True for a kind whose WR+0 has only a result code, and whose WR+1 is for internal use."""
         return self.kind is not None and self.kind not in TRANSACTIONS
 
     @property
@@ -156,7 +156,7 @@ def read_result(plc: Plc, start: Element, kind: TableKind | None = None) -> Resu
         DataError: the length that WR+8 gives reaches past the registers that can hold it.
         LineError: no answer.
     """
-    hint = f"is {start} the instruction's operand WR?"
+    hint = f"check that {start} is the instruction's operand WR"
     message = kind is not None and kind.is_message
     reason = misplaced("WR", start, WR_WORDS + message)
     if reason is not None:
@@ -210,7 +210,7 @@ def read_words(plc: Plc, start: Element, count: int, hint: str | None = None) ->
         raise PlcError(
             f"{count} registers from {start} were asked for, and the PLC refused {refused}: "
             f"{next(iter(reading.errors.values()))}",
-            hint=hint or f"is {start} where the table begins?",
+            hint=hint or f"check that the table begins at {start}",
             element=str(start),
         )
     return tuple(reading.values[element] for element in elements)

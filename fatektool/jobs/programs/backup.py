@@ -1,4 +1,4 @@
-"""Back up a PLC's program: every page proven, header checked, nothing kept that is not valid."""
+"""Back up a PLC's program: every page proven, header checked, only valid images are saved."""
 
 from __future__ import annotations
 
@@ -61,18 +61,18 @@ def backup(
         single_pass: read once, and compare with nothing.
         any_header: keep an image with an invalid header; it is marked.
         known: what is on file of this PLC: a page that is as on file needs no second reading.
-        progress: told of each page.
+        progress: called for each page.
 
     Raises:
-        LineError: a page found no answer, or the line has too many errors.
-        PlcRefused: the PLC does not give its program away.
+        LineError: no answer for a page, or the line has too many errors.
+        PlcRefused: the PLC refuses its program.
         DataError: an invalid header, or two passes differ.
     """
 
     def check(reading: ProgramReading) -> None:
         if not any_header:
             reading.program.require_header(
-                "run it again; if it stays so, --any-header keeps the image as it is, marked as such"
+                "run it again; if the error stays, --any-header saves the image as it is, marked as such"
             )
 
     if single_pass:

@@ -70,14 +70,14 @@ def first_known(paths: Iterable[Path | None], note: Callable[[str], None] = igno
 
     Args:
         paths: the files; None for none.
-        note: is told why one cannot be read; it is no fault, as everything is read twice then.
+        note: gets the reason if one cannot be read; this is no fault, as everything is read twice then.
     """
     for path in paths:
         if path is not None and path.is_file():  # a pipe that is written to has nothing to read
             try:
                 return known_in(path)
             except FatektoolError as error:
-                note(f"{error.message}: it is not compared with, pages are read twice")
+                note(f"{error.message}: it is not used, all pages are read twice")
     return None
 
 

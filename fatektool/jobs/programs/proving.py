@@ -50,14 +50,14 @@ def read_proven(
     Args:
         plc: the PLC.
         known: what is on file of it; None for nothing.
-        progress: told of each page.
+        progress: called for each page.
         phase: what the progress calls it.
         after_first: looks at the first reading of all pages, and may raise before more is read.
 
     Raises:
         DataError: the program changed while it was read over a clean line.
-        LineError: no two readings over a bad line agree, or a page found no answer.
-        PlcRefused: the PLC does not give its program away.
+        LineError: no two readings over a bad line agree, or no answer for a page.
+        PlcRefused: the PLC refuses its program.
     """
     if known is not None:
         status = plc.detailed_status()
@@ -128,9 +128,10 @@ class _KnownReading:
                 return
             if line_trouble(self._plc) == trouble:
                 raise DataError(
-                    "the program changed while it was read: two readings over a clean line differ in page "
+                    "the program changed while it was read: two readings without line errors differ in page "
                     f"{ranges(numbers)}",
-                    hint="is somebody loading a program, or was the PLC exchanged? run it again after that",
+                    hint="check that nobody loads a program and that the PLC was not replaced, then run "
+                    "it again",
                 )
             for number, page in found.items():
                 self._pages[number] = page
@@ -138,7 +139,7 @@ class _KnownReading:
         raise LineError(
             f"{self._plc.target}: no two of {MOST_PASSES} readings of page {ranges(numbers)} agree: "
             "the line has too many errors",
-            hint="check shield, termination and baud; a slower baud or a shorter cable helps",
+            hint="check shield and termination; use a lower baud rate or a shorter cable",
         )
 
     def _read(self, numbers: Sequence[int], phase: str, separated: set[int] | None = None) -> list[bytes]:

@@ -66,8 +66,8 @@ def read_program(
         status: the answer to 53, if it was read just now.
 
     Raises:
-        LineError: a page found no answer.
-        PlcRefused: the PLC does not give its program away.
+        LineError: no answer for a page.
+        PlcRefused: the PLC refuses its program.
         DataError: the PLC's ladder size is 0.
     """
     if status is None:
@@ -96,7 +96,7 @@ def read_all_pages(
         count: read no more than this many; None for all that the ladder size asks for.
 
     Raises:
-        LineError: a page found no answer.
+        LineError: no answer for a page.
         PlcRefused: it refuses a page before its program's end.
     """
     last = page_count(words) - 1
@@ -141,7 +141,7 @@ def read_program_twice(
     Raises:
         DataError: two passes over a clean line differ.
         LineError: no two passes over a bad line agree.
-        PlcRefused: the PLC does not give its program away.
+        PlcRefused: the PLC refuses its program.
     """
     before = line_trouble(plc)
     last = read_program(plc, phase, progress)
@@ -156,13 +156,13 @@ def read_program_twice(
             return ProgramReading(again.status, again.program, number, proof)
         if line_trouble(plc) == before:
             raise DataError(
-                f"two passes over a clean line read different programs: {difference}",
-                hint="is somebody loading a program, or was the PLC exchanged? run it again in peace",
+                f"two passes without line errors read different programs: {difference}",
+                hint="check that nobody loads a program and that the PLC was not replaced, then run it again",
             )
         before, last = between, again
     raise LineError(
         f"{plc.target}: no two of {MOST_PASSES} passes read the same program: the line has too many errors",
-        hint="check shield, termination and baud; a slower baud or a shorter cable helps",
+        hint="check shield and termination; use a lower baud rate or a shorter cable",
     )
 
 
@@ -196,7 +196,7 @@ def require_same_status(before: DetailedStatus, now: DetailedStatus) -> None:
     if changed is not None:
         raise DataError(
             f"the PLC changed while its program was read: {changed}",
-            hint="was the PLC exchanged? run it again",
+            hint="check whether the PLC was replaced, then run it again",
         )
 
 

@@ -1,4 +1,4 @@
-"""Restore: put a backup's program into a PLC, in such a way that the previous one can be put back.
+"""Restore: put a backup's program into a PLC, so that the previous one can be written back.
 
 The order, and what an end at each step leaves in the PLC::
 
@@ -52,7 +52,7 @@ class RestoreOptions:
         stop: stop a running PLC; without it a running PLC is refused.
         run: let it run again when all is read back.
         changed_only: write only the pages that differ.
-        rollback: put the previous program back if writing or reading back fails for good.
+        rollback: write the previous program back if writing or reading back finally fails.
         any_header: restore a file whose header is invalid and that is marked so.
         single_pass: read the previous program once, not twice.
     """
@@ -126,13 +126,13 @@ def plan_restore(
         backup: what to restore.
         options: what the restore may do.
         known: what is on file of the program now in the PLC; a page that is as on file is read once.
-        progress: told of each page.
+        progress: called for each page.
 
     Raises:
         DataError: another ladder size; a header that does not hold.
         PlcNotReady: a ROM pack is fitted, or the PLC runs and may not be stopped.
         LineError: no answer.
-        PlcRefused: the PLC does not give its program away.
+        PlcRefused: the PLC refuses its program.
     """
     if not options.any_header:
         backup.program.require_header(
@@ -142,7 +142,7 @@ def plan_restore(
     require_size(backup.program, status.system.ladder_words)
     if status.flags.rom_pack:
         raise PlcNotReady(
-            "a ROM pack is fitted: the PLC takes no program over the link",
+            "a ROM pack is fitted: the PLC does not accept a program over the line",
             hint="switch the PLC off, take the ROM pack out, switch it on and run this again",
         )
     if status.flags.running and not options.stop:
@@ -173,7 +173,7 @@ def plan_restore(
         warnings.append(other_model)
     if comparison.b_has_more:
         left = ranges(range(count, len(present.pages)))
-        warnings.append(f"the PLC has more pages than the file, {left}: they stay as they are")
+        warnings.append(f"the PLC has more pages than the file, {left}: they are not changed")
     return RestorePlan(
         backup.program,
         backup_of(plc, reading),
@@ -203,7 +203,7 @@ def carry_out(
         agree: gets where that is, and raises an error if the user does not agree; not called if there is
             nothing to do.
         progress: called for each page.
-        mark: takes note that pages are being written.
+        mark: records that pages are being written.
 
     Raises:
         RestoreIncomplete: the PLC's program is neither the previous nor the new one.
@@ -250,7 +250,7 @@ def _run(plc: Plc) -> None:
         silent = isinstance(error, LineError)
         doubt = "whether it runs is not known" if silent else "the PLC does not RUN"
         raise (LineError if silent else PlcError)(
-            f"the program on file is in the PLC, read back and verified, but {doubt}: {error.message}",
+            f"the program of FILE is in the PLC, read back and verified, but {doubt}: {error.message}",
             hint=error.hint,
             **error.details,
         ) from error

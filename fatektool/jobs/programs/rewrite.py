@@ -1,4 +1,4 @@
-"""A program as a part of a write that can be undone: what the PLC holds is known page by page."""
+"""A program as a part of a write that can be undone: the contents of the PLC are known page by page."""
 
 from __future__ import annotations
 
@@ -52,11 +52,11 @@ class Rewrite:
         """What the user should know of a program that was verified in the end."""
         if not self._again:
             return ()
-        found = f"page {ranges(self._again)} was acknowledged, did not take, and was written again"
+        found = f"page {ranges(self._again)} was acknowledged but not stored, and was written again"
         if self._foreign:
             found += (
                 f"; page {ranges(self._foreign)} held neither the previous nor the new program: was the PLC "
-                f"exchanged, or is somebody else loading a program? The safety backup may be of another one"
+                f"replaced, or is somebody else loading a program? The safety backup may be of another one"
             )
         return (found,)
 
@@ -82,13 +82,13 @@ class Rewrite:
             )
             raise DataError(
                 f"this is not the PLC whose program was read ({changed})",
-                hint="was it exchanged meanwhile? run the restore again",
+                hint="check whether the PLC was replaced, then run the restore again",
             )
         if status.flags.rom_pack or (status.flags.running and not self._running):
             what = "got a ROM pack" if status.flags.rom_pack else "went to RUN"
             raise PlcNotReady(
                 f"the PLC {what} since its program was read",
-                hint="was it exchanged meanwhile? run the restore again",
+                hint="check whether the PLC was replaced, then run the restore again",
             )
         if self._running:
             self._plc.stop()
@@ -99,7 +99,7 @@ class Rewrite:
         A page that reads back wrong is written once more: an acknowledged write that was not made.
 
         Raises:
-            PlcError: the PLC refused a page, or holds something else now.
+            PlcError: the PLC refused a page, or has other data now.
             LineError: no answer.
         """
         self._write(self._wanted, self._pages, _NEW, "writing", progress)
@@ -112,7 +112,7 @@ class Rewrite:
         self._prove(previous, _OLD, progress)
 
     def states(self) -> list[tuple[str, str]]:
-        """What the PLC holds, by page."""
+        """What the PLC has, by page."""
         pages = {state: self._in(state) for state in (_NEW, _OLD, _UNCERTAIN)}
         unread = self._acknowledged_only
         found = {state: [page for page in those if page not in unread] for state, those in pages.items()}
@@ -174,14 +174,14 @@ class Rewrite:
             wrong = self._read_back(program, wrong, "reading back again", progress)
         if wrong:
             raise PlcError(
-                f"the PLC acknowledged page {ranges(wrong)}, but holds something else there",
+                f"the PLC acknowledged page {ranges(wrong)}, but has other data there",
                 hint="the PLC's program memory may be worn out or protected",
             )
         words = self._plc.detailed_status().system.ladder_words
         if words != program.ladder_words:
             raise PlcError(
                 f"the PLC's ladder size is {words} words now, and was {program.ladder_words} before",
-                hint="was it exchanged meanwhile? see 'fatektool status'",
+                hint="check whether the PLC was replaced: see 'fatektool status'",
             )
 
     def _read_back(self, program: Program, pages: Sequence[int], phase: str, progress: Progress) -> list[int]:

@@ -1,4 +1,4 @@
-"""What makes a backup one to rely on: there is a program in it, it is whole, and it is not too old."""
+"""What makes a backup reliable: it has a program, it is complete, and it is not too old."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ _LOOKED_AT: Final = 200
 
 
 def require_ladder(program: Program) -> None:
-    """Refuse an image that has lost its ladder: behind a header that holds, one byte all over.
+    """Refuse an image without a program: after a valid header all bytes are the same.
 
-    A PLC whose memory was lost gives such an image; kept by night, it would push the good backup out.
+    A PLC that lost its memory has such an image. Saved every night, it would replace the good backup.
 
     Raises:
         DataError: there is no ladder in it.
@@ -52,7 +52,7 @@ def former_hash(path: Path) -> str | None:
             start = file.read(_LOOKED_AT)
         if start.strip() and _BACKUP not in start:
             raise UsageError(
-                f"{path} is no backup, and is kept", hint="name another folder", file=str(path)
+                f"{path} is not a backup and is not replaced", hint="name another folder", file=str(path)
             ) from error
         raise
 

@@ -46,7 +46,7 @@ class SafetyBackup:
     folder: Path | None
 
     def find(self, folder: Path) -> Path | None:
-        """The safety backup of an unfinished restore of the same file, if the PLC holds such a half."""
+        """The safety backup of an unfinished restore of the same file, if the PLC has part of it."""
         return find_safety_backup(
             self.present.program, self.wanted, self.present.source.station, self.file, folder
         )
@@ -79,7 +79,7 @@ def save_safety_backup(backup: Backup, file: Path, folder: Path) -> Path:
 def find_safety_backup(
     present: Program, wanted: Program, station: int, file: Path, folder: Path
 ) -> Path | None:
-    """The safety backup of an unfinished restore of the same file, if the PLC holds such a half.
+    """The safety backup of an unfinished restore of the same file, if the PLC has part of it.
 
     Args:
         present: the program in the PLC.

@@ -27,11 +27,11 @@ def verify(plc: Plc, program: Program, *, progress: Progress = ignore) -> Compar
     Args:
         plc: the PLC; it may run.
         program: what is on file.
-        progress: told of each page.
+        progress: called for each page.
 
     Raises:
-        LineError: a page found no answer.
-        PlcRefused: the PLC does not give its program away.
+        LineError: no answer for a page.
+        PlcRefused: the PLC refuses its program.
     """
     return _verify(plc, program, progress)[0]
 
@@ -45,11 +45,11 @@ def verify_file(plc: Plc, file: ProgramFile, *, progress: Progress = ignore) -> 
     Args:
         plc: the PLC; it may run.
         file: what is on file.
-        progress: told of each page.
+        progress: called for each page.
 
     Raises:
-        LineError: a page found no answer.
-        PlcRefused: the PLC does not give its program away.
+        LineError: no answer for a page.
+        PlcRefused: the PLC refuses its program.
     """
     from fatektool.ladder.image import code_of
     from fatektool.project.comparison import ProgramComparison, compared, program_or_none

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ValueChange:
-    """One value that differs. None stands for a value that could not be read, or a key that is not there.
+    """One value that differs. None is a value that could not be read, or a key that is not there.
 
     Attributes:
         key: which.

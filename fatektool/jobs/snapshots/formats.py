@@ -125,7 +125,7 @@ def _field(text: str) -> str:
 
 
 def _influx_tag(text: str) -> str:
-    """A tag's value. There is no way to escape a backslash that all readers agree on: / stands for it."""
+    """A tag's value. Readers do not agree how to escape a backslash: it is replaced with /."""
     plain = re.sub(r"[\x00-\x1f\x7f]", " ", text).replace("\\", "/")
     return re.sub(r"([,= ])", r"\\\1", plain)
 

@@ -56,7 +56,7 @@ class Snapshot:
         target: as the user named it.
         station: 1 to 254; over Modbus TCP also 0 and 255.
         protocol: ``facon``.
-        running: True in RUN; None if the protocol does not tell.
+        running: True in RUN; None if the protocol does not have it.
         duration_s: how long the reading took.
         requests: how many requests it took.
         values: by key; None where there is an error.

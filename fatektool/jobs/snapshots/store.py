@@ -146,7 +146,7 @@ def append_line(
         waiting: gets a note about that process.
 
     Raises:
-        UsageError: the file cannot be written, or holds something else.
+        UsageError: the file cannot be written, or has other contents.
         DataError: the disk is full or broken; the file is as it was.
         PortBusy: another process locks the file for too long.
 
@@ -179,7 +179,7 @@ def require_lines(path: Path, keep: Keep | None) -> Path:
         The path that it really has.
 
     Raises:
-        UsageError: it holds something else, or cannot be written.
+        UsageError: it has other contents, or cannot be written.
     """
     real = Path(os.path.realpath(path))
     if keep is not None or not real.is_file():

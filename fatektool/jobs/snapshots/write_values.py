@@ -33,7 +33,7 @@ class ValuesPlan:
 
     Attributes:
         failed: what is said if the write ends half way: "the table was not written completely".
-        present: what the PLC holds now.
+        present: the values in the PLC now.
         status: its status (40) then; None where there is none.
         changes: the values that differ, no discrete or register twice.
         same: how many hold already what they shall.
@@ -135,7 +135,7 @@ def write_values(
         copy: the safety snapshot; None for none.
         agree: gets where that is, and raises an error if the user does not agree.
         rollback: write the previous values back if writing or reading back fails for good.
-        mark: takes note that a write is under way.
+        mark: records that a write has begun.
         progress: called as it goes on.
 
     Raises:

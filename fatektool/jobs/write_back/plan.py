@@ -35,7 +35,7 @@ class Part(Protocol):
         """Write what differs, read it back and compare.
 
         Raises:
-            PlcError: the PLC refused, or holds something else now.
+            PlcError: the PLC refused, or has other contents now.
             LineError: no answer.
         """
 
@@ -43,7 +43,7 @@ class Part(Protocol):
         """Write what was there before, read it back and compare; the errors of ``write``."""
 
     def states(self) -> list[tuple[str, str]]:
-        """What the PLC holds after a failure, for people: ``("page 0-3", "the new program")``."""
+        """What the PLC has after a failure, for people: ``("page 0-3", "the new program")``."""
 
     def details(self) -> dict[str, Any]:
         """The same for scripts."""
@@ -78,14 +78,14 @@ class SafetyCopy(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class WritePlan:
-    """A write that is planned.
+    """A planned write.
 
     Attributes:
         parts: what is written, in order.
         copy: of all that they change.
         failed: what is said if it ends half way.
         mode: the mode that the PLC is in then, and what must not be done; empty if the write leaves it alone.
-        rollback: write back what was there if writing or reading back fails for good.
+        rollback: write back the previous data if writing or reading back finally fails.
     """
 
     parts: tuple[Part, ...]

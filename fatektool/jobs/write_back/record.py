@@ -7,7 +7,7 @@
      "safety_backup": "/srv/press.safety-st01-….json", "command": "fatektool restore …"}
 
 ``job`` is there as well if it is another one than ``restore``. A process that is killed leaves the record, so
-that the next command that talks to this PLC warns. A record that cannot be written does not stop a write; one
+that the next command that uses this PLC warns. A record that cannot be written does not stop a write; one
 that cannot be read is reported.
 """
 
@@ -30,7 +30,7 @@ _MAX_FILE: Final = 1 << 16
 
 
 class Mark(Protocol):
-    """Takes note of a write: ``begin`` before its first request, ``end`` when it is complete or undone."""
+    """Records a write: ``begin`` before its first request, ``end`` when it is complete or undone."""
 
     def begin(self, safety_copy: Path | None) -> None:
         """The next request writes.
@@ -40,17 +40,17 @@ class Mark(Protocol):
         """
 
     def end(self, *, complete: bool) -> None:
-        """The write is complete; or, if not, the PLC holds what it held before, to the byte."""
+        """The write is complete; or, if not, the PLC has exactly its previous contents."""
 
 
 class NoMark:
-    """Takes no note."""
+    """Records nothing."""
 
     def begin(self, safety_copy: Path | None) -> None:
-        """Take no note."""
+        """Record nothing."""
 
     def end(self, *, complete: bool) -> None:
-        """Take no note."""
+        """Record nothing."""
 
 
 NO_MARK: Final = NoMark()

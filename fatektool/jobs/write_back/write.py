@@ -1,4 +1,4 @@
-"""The order of every write that can be undone, and what the PLC holds if it ends at a step.
+"""The order of every write that can be undone, and what the PLC has if it ends at a step.
 
 ::
 
@@ -52,14 +52,14 @@ def write_back(
         plc: the PLC.
         plan: of this PLC, just now.
         agree: gets where the safety copy is, shows the plan, and raises an error if the user does not agree.
-        mark: takes note that a write is under way.
+        mark: records that a write has begun.
         progress: called as it goes on.
 
     Returns:
         Where the safety copy is; None if nothing is saved.
 
     Raises:
-        RestoreIncomplete: part of it is written; ``states`` and ``details`` say what the PLC holds.
+        RestoreIncomplete: part of it is written; ``states`` and ``details`` have the contents of the PLC.
         UsageError: the copy cannot be written, or the user does not agree; nothing was written.
         DataError: the disk is full, or this is not the PLC of the plan; nothing was written.
         PlcError: the PLC refuses and nothing was changed, or it was rolled back.

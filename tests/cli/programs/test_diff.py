@@ -106,7 +106,7 @@ def test_programs_without_mnemonics(cli: Cli) -> None:
 def test_standard_input_is_one_program(cli: Cli) -> None:
     done = cli("diff", "-", "-")
     assert (done.code, done.out) == (2, "")
-    assert "standard input holds one program" in done.err
+    assert "standard input has one program" in done.err
 
 
 def test_a_long_network_shows_what_is_near(cli: Cli) -> None:
@@ -175,7 +175,7 @@ def test_inspect(cli: Cli) -> None:
     project_file("press.pdw", IMAGE, elements=ELEMENTS)
     backup_file("press.json", IMAGE)
     out = cli("inspect", "press.pdw", "--raw", "press.bin").out
-    assert "code      25 words in 6 networks, 2 words not understood" in out
+    assert "code      25 words in 6 networks, 2 unknown words" in out
     assert "comments  3 of elements, 0 of networks, cp1252" in out
     assert Path("press.bin").read_bytes() == IMAGE.image
     document = cli("inspect", "press.pdw", "--json").document("inspect")
@@ -188,7 +188,7 @@ def test_restore_takes_no_project(cli: Cli) -> None:
     project_file("press.pdw", IMAGE)
     done = cli("restore", "press.pdw", "-p", "sim:", "--yes")
     assert (done.code, done.out) == (2, "")
-    assert "restore takes backups alone" in done.err
+    assert "restore takes only backups" in done.err
     done = cli("history", "record", "press", "press.pdw", "--history", "books")
     assert done.code == 5
     assert "a WinProladder project, expected a backup of a PLC" in done.err

@@ -39,7 +39,7 @@ def test_backup_inspect_verify(plc: Path, cli: Cli) -> None:
     assert "program  FBS40110 (code 1587 of 7936 words), 8192 words, 128 pages\n" in done.out
     shown = cli("inspect", "b1.json")
     assert "header       FBS40110 (code 1587 of 7936 words)\n" in shown.out
-    assert "checksum     8CA7, holds\n" in shown.out
+    assert "checksum     8CA7, correct\n" in shown.out
     document = cli("inspect", "b1.json", "--json").document("inspect")
     assert document["warnings"] == [ALL]
     assert document["page_count"] == 128
@@ -65,7 +65,7 @@ def test_a_checksum_that_does_not_hold_is_a_warning_and_in_the_json(plc: Path, c
     assert document["header"]["checksum"] == {"stored": "8CA7", "computed": "8CA8", "valid": False}
     assert document["warnings"] == [warning.removeprefix("warning: "), ALL]
     shown = cli("inspect", "b1.json")
-    assert "checksum     8CA7, DOES NOT HOLD: the code's is 8CA8\n" in shown.out
+    assert "checksum     8CA7, WRONG: that of the code is 8CA8\n" in shown.out
 
 
 def test_a_header_page_that_is_not_filled_with_ff_is_a_warning_and_in_the_json(place: Path, cli: Cli) -> None:
@@ -101,7 +101,7 @@ def test_verify_says_that_the_plc_has_more(place: Path, cli: Cli) -> None:
     pages = [*load_backup(place / "small.json").program.pages, b"\xff" * 128]
     build_simulation(model="b1-14mc", program=pages, state="large")
     done = cli("verify", "small.json", "-p", "sim:large", "--json")
-    said = "the PLC has more than the 128 pages of small.json: page 128 and on are not compared"
+    said = "the PLC has more than the 128 pages of small.json: the rest is not compared"
     assert (done.code, done.err) == (0, f"warning: {said}\n")
     assert done.document("verify")["b_has_more_pages"] is True
 

@@ -69,7 +69,7 @@ def test_a_project_drawn(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", "100")
     done = cli("listing", "press.pdw", "--ladder")
     assert (done.code, done.out) == (0, DRAWN)
-    assert "2 of 25 words of code are not understood" in done.err
+    assert "2 of 25 words of code are not known" in done.err
     one = cli("listing", "press.pdw", "--ladder", "--network", "3").out
     assert one == DRAWN[DRAWN.index("N0003") : DRAWN.index("\nN0004")]
 

@@ -50,7 +50,7 @@ def test_a_project(cli: Cli) -> None:
     project_file("press.pdw", IMAGE, elements=ELEMENTS, networks={0x0200: b"Motor"})
     done = cli("listing", "press.pdw")
     assert (done.code, done.out) == (0, LISTED)
-    assert "2 of 25 words of code are not understood" in done.err
+    assert "2 of 25 words of code are not known" in done.err
 
 
 @pytest.mark.parametrize("swapped", [False, True])
@@ -182,7 +182,7 @@ def test_an_fbe(cli: Cli) -> None:
     ]
     document = cli("listing", "fbe.pdw", "--json").document("listing")
     assert (document["header"]["family"], document["header"]["ladder_words"]) == (None, None)
-    assert "header    none known (FBE)" in cli("inspect", "fbe.pdw").out
+    assert "header    not known (FBE)" in cli("inspect", "fbe.pdw").out
     assert cli("inspect", "fbe.pdw", "--json").document("inspect")["networks"] == 2
     assert cli("diff", "fbe.pdw", "fbe.pdw").out == "same: 256 pages, same code\n"
     assert cli("xref", "fbe.pdw", "X0").code == 0

@@ -36,7 +36,7 @@ def test_bare_pages_that_cannot_be_written_cost_no_backup(
     monkeypatch.setattr("fatektool.cli.programs.backup.write_whole", full)
     done = cli("backup", "x.json", "--raw", "x.bin", "-p", press.target)
     assert done.code == 5
-    assert "x.json is saved, but the bare pages are not: cannot write x.bin: No space" in done.err
+    assert "x.json is saved, but its binary pages are not: cannot write x.bin: No space" in done.err
     assert cli("verify", "x.json", "-p", press.target).code == 0
 
 
@@ -93,7 +93,7 @@ def test_a_backup_is_not_overwritten_with_its_own_pages(press: Press, cli: Cli, 
 
 def test_what_inspect_shows(press: Press, cli: Cli) -> None:
     rows = dict(re.split(r"  +", line, maxsplit=1) for line in cli("inspect", press.old).out.splitlines())
-    assert rows["file"] == f"{press.old}: whole, hash and header checked"
+    assert rows["file"] == f"{press.old}: complete, hash and header checked"
     assert rows["source"] == f"station 1 on {press.target}, facon, 9600 7E1"
     assert rows["ladder size"] == "400 words, 8 pages, 7 not empty"
     assert rows["sha256"] == OLD.sha256

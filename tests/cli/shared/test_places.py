@@ -81,12 +81,12 @@ def test_a_folder_that_is_missing_is_made(cli: Cli, press: Press, words: str, fo
     assert cli("snapshot", "R0", "-p", "sim:", "-o", "s.json").code == 0
     done = cli(*words.split())
     assert done.code == 0, done
-    assert f"made the folder {folder}" in done.err
+    assert f"created the folder {folder}" in done.err
     assert Path(folder).is_dir()
     if "snapshot apply" not in words:
         assert list(Path(folder).iterdir())
     if "restore" not in words:
-        assert "made the folder" not in cli(*words.split(), "-q").err
+        assert "created the folder" not in cli(*words.split(), "-q").err
 
 
 def test_a_dry_run_makes_no_folder(cli: Cli, press: Press) -> None:

@@ -86,7 +86,7 @@ def test_a_round_that_takes_long_delays_the_next_and_none_is_caught_up() -> None
 def test_a_round_that_fails_is_said_and_not_counted() -> None:
     made = line(fails=lost(1, 2))
     assert [*made.rounds(Pace(1, 3))] == [0, 3, 4]
-    assert made.warned == ["lost 1; trying on", "lost 2; trying on"]
+    assert made.warned == ["lost 1; trying again", "lost 2; trying again"]
     assert len(made.failures) == 2
 
 

@@ -192,4 +192,4 @@ def test_redirected_stdout_is_utf_8_also_where_latin_1_is_asked_for(press: Press
     press.old.replace(name)
     done = process("inspect", name, PYTHONIOENCODING="latin-1")
     assert done.code == 0
-    assert f"{name}: whole" in done.out
+    assert f"{name}: complete" in done.out

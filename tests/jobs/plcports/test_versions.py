@@ -59,7 +59,7 @@ def test_what_is_said() -> None:
     (said,) = LinkHost("4.0", needs).warnings()
     assert said.endswith("Modbus ASCII) needs OS 4.24 or later, and this PLC has OS 4.0")
     (said,) = LinkHost("4.2", needs).warnings()
-    assert "so it may have 4.20 to 4.29" in said
+    assert "so it can have 4.20 to 4.29" in said
     (said,) = LinkHost(None, needs).warnings()
     assert said.endswith("this PLC's OS is not known")
     (said,) = LinkHost("3.1", needs).warnings()

@@ -103,9 +103,11 @@ def test_two_passes_over_a_clean_line_that_differ(page: int) -> None:
             bench.device.pages[page] = bytes(128)
 
     bench.tap.before = load
-    with pytest.raises(DataError, match=f"clean line read different programs: page {page}; ") as caught:
+    with pytest.raises(
+        DataError, match=f"without line errors read different programs: page {page}; "
+    ) as caught:
         backup(bench.plc)
-    assert "somebody loading a program" in str(caught.value)
+    assert "nobody loads a program" in str(caught.value)
     assert bench.tap.count[READ_PAGE] == 2 * PAGES
 
 
@@ -172,7 +174,7 @@ def test_the_same_on_a_clean_line_is_no_error_of_the_line() -> None:
     bench = Bench(program(400))
     true = bench.pages[6][-1] & 15
     bench.tap.forge = lambda seen, answer: forged(seen, answer, page=6, digit=true + (seen.passes == 1))
-    with pytest.raises(DataError, match=r"clean line.*page 6;"):
+    with pytest.raises(DataError, match=r"without line errors.*page 6;"):
         backup(bench.plc)
 
 
@@ -182,7 +184,7 @@ def test_a_line_too_bad_for_any_two_passes_to_agree() -> None:
     with pytest.raises(LineError, match=f"no two of {MOST_PASSES} passes read the same") as caught:
         backup(bench.plc)
     assert caught.value.exit_code == 3
-    assert "check shield, termination and baud" in str(caught.value)
+    assert "check shield and termination" in str(caught.value)
 
 
 @pytest.mark.parametrize(

@@ -144,7 +144,7 @@ def test_pages_that_the_file_has_not_stay_as_they_are() -> None:
     bench = Bench(program(400, seed=1))
     short = Program(400, program(400, seed=2).pages[:7])
     made = plan(bench, short)
-    assert made.warnings == ("the PLC has more pages than the file, 7: they stay as they are",)
+    assert made.warnings == ("the PLC has more pages than the file, 7: they are not changed",)
     assert made.present.program == program(400, seed=1)
     carry_out(bench.plc, made, None)
     assert bench.pages == (*short.pages, program(400, seed=1).pages[7])

@@ -258,7 +258,7 @@ def test_run_is_refused_after_the_restore(tmp_path: Path, flag: str, code: str) 
     error = caught.value
     assert error.exit_code == 4
     assert error.message.startswith(
-        "the program on file is in the PLC, read back and verified, but the PLC does not RUN: the PLC refused"
+        "the program of FILE is in the PLC, read back and verified, but the PLC does not RUN: the PLC refused"
     )
     assert f"error {code}, cannot run" in error.message
     assert error.hint

@@ -38,6 +38,6 @@ def test_a_damaged_backup_is_replaced(tmp_path: Path) -> None:
 def test_what_is_no_backup_is_kept(tmp_path: Path) -> None:
     path = tmp_path / "press.json"
     path.write_text('{"mine": 1}')
-    with pytest.raises(UsageError, match="is no backup, and is kept"):
+    with pytest.raises(UsageError, match="is not a backup and is not replaced"):
         replace_backup(ONE, path)
     assert path.read_text() == '{"mine": 1}'

@@ -314,7 +314,7 @@ def test_ctrl_c_while_rolling_back(tmp_path: Path) -> None:
 
 def test_a_plc_that_acknowledges_and_writes_nothing(tmp_path: Path) -> None:
     bench = Bench(OLD, faults=("lying-write=1",))
-    with pytest.raises(PlcError, match="acknowledged page 1-7, but holds something else there") as caught:
+    with pytest.raises(PlcError, match="acknowledged page 1-7, but has other data there") as caught:
         put(bench, tmp_path)
     assert "nothing was changed, the PLC holds its previous program" in caught.value.message
     assert "worn out or protected" in str(caught.value)
@@ -358,7 +358,7 @@ def test_a_page_that_holds_neither(tmp_path: Path) -> None:
             bench.device.pages[4] = bytes(128)
 
     bench.tap.after = wear_out
-    with pytest.raises(RestoreIncomplete, match="acknowledged page 4, but holds something else") as caught:
+    with pytest.raises(RestoreIncomplete, match="acknowledged page 4, but has other data") as caught:
         put(bench, tmp_path)
     assert caught.value.details["pages_uncertain"] == [4]
     told_right(caught.value, bench)

@@ -42,7 +42,7 @@ def encode_document(protocol: str, raw: bytes, explanation: Explanation) -> dict
 
 
 def _explanation(explanation: Explanation) -> dict[str, Any]:
-    """What a frame is, whom it is for, and its fields."""
+    """What a frame is, its station, and its fields."""
     return {
         "role": explanation.role.value,
         "raw": explanation.raw.hex().upper(),

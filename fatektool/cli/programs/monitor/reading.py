@@ -94,7 +94,7 @@ class Reading:
         lost = self.lost
         if lost is not None:
             return News(
-                None, lost=f"NO ANSWER since {self.lost_since}: {lost.message}; trying on", program=words
+                None, lost=f"NO ANSWER since {self.lost_since}: {lost.message}; trying again", program=words
             )
         return News(self.last, self.rate, program=words)
 

@@ -224,7 +224,7 @@ def test_it_is_over_at_its_deadline(cli: Cli, plant: Hall) -> None:
         (timedelta(hours=35), State.OK, "backup 35 h old"),
         (timedelta(hours=37), State.WARNING, "backup 37 h OLD, expected at most 36 h"),
         (timedelta(minutes=-10), State.OK, "backup 0 s old"),
-        (timedelta(hours=-2), State.WARNING, "backup of the FUTURE, "),
+        (timedelta(hours=-2), State.WARNING, "backup DATED IN THE FUTURE, "),
     ],
 )
 @pytest.mark.usefixtures("place")

@@ -156,7 +156,7 @@ def test_what_lies_in_the_place(cli: Cli, plant: Hall) -> None:
     Path("backups/pump.json").touch()
     done = cli("fleet", "backup", "--dir", "backups")
     assert states(done.out) == {"press": "ok", "oven": "FAILED", "pump": "ok"}
-    assert "oven.json is no backup, and is kept; name another folder" in done.out
+    assert "oven.json is not a backup and is not replaced; name another folder" in done.out
     assert Path("backups/oven.json").read_text() == "my notes"
     assert load_backup(Path("backups/press.json")).program == OLD
     assert "press.json: not a backup file" in done.err

@@ -88,7 +88,7 @@ def test_a_line_that_comes_and_goes(cli: Cli, monkeypatch: pytest.MonkeyPatch) -
         spied(monkeypatch, seen.append, lambda: not 8 < len(seen) < 16)
         done = cli(*WORDS, "-p", door.target, "--interval", "0", "--count", "6", "--retries", "0")
     assert (done.code, len(rounds(done.out))) == (0, 6)
-    assert "trying on" in done.err
+    assert "trying again" in done.err
 
 
 @pytest.mark.parametrize("more", [(), ("--json",)])

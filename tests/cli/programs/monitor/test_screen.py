@@ -109,7 +109,7 @@ def test_a_line_that_is_lost_and_comes_again() -> None:
         shown.until("M421=1")
         gone = door.simulation.plcs.pop(1)
         lines = shown.until("NO ANSWER since")
-        assert "trying on" in " ".join(lines)
+        assert "trying again" in " ".join(lines)
         assert "M421=?" in "\n".join(lines)  # what is not known now is not shown as if it were
         assert "rounds/s" not in lines[0]
         shown.type(DOWN)  # keys are heard meanwhile
