@@ -94,7 +94,7 @@ class Reading:
         lost = self.lost
         if lost is not None:
             return News(
-                None, lost=f"NO ANSWER since {self.lost_since}: {lost.message}; trying again", program=words
+                None, lost=f"LINE LOST since {self.lost_since}: {lost.message}; trying again", program=words
             )
         return News(self.last, self.rate, program=words)
 
@@ -103,7 +103,7 @@ class Reading:
         try:
             rounds = paced_rounds(
                 self._plc,
-                self._monitor.read,
+                self._read,
                 self._pace,
                 failed=self._failed,
                 voice=None,
@@ -120,6 +120,11 @@ class Reading:
             self.error = error
         self.is_over = True
         self._on_news()
+
+    def _read(self) -> Round:
+        if self._stop.is_set():  # there may be no pause between two rounds
+            raise _Stopped
+        return self._monitor.read()
 
     def _failed(self, error: LineError) -> None:
         """Say so, and go on; but for the first round of all, which shows that nothing is right yet.

@@ -95,6 +95,7 @@ class View:
 
     def _end(self) -> None:
         self.is_over = True
+        self.message = "ending: waiting for the answer to the last request"
 
     def _ask(self) -> None:
         self.prompt = ""

@@ -32,12 +32,20 @@ class LiveTerminal(Terminal):
         return [line.rstrip() for line in self.screen.display]
 
     def until(self, holds: str | Callable[[list[str]], bool]) -> list[str]:
-        """Read until a text is on the screen, or something holds of it; give the screen."""
-        while not (holds in "\n".join(self.lines) if isinstance(holds, str) else holds(self.lines)):
+        """Read until a text is on a screen drawn to its end, or something holds of it; give the screen."""
+        while not (self._is_whole and self._has(holds)):
             data = os.read(self.master, 65536)
             self.raw += data.decode(errors="replace")
             self._stream.feed(data)
         return self.lines
+
+    @property
+    def _is_whole(self) -> bool:
+        """True if the cursor is in the last line, where each drawing of the screen ends."""
+        return bool(self.screen.cursor.y == self.screen.lines - 1)
+
+    def _has(self, holds: str | Callable[[list[str]], bool]) -> bool:
+        return holds in "\n".join(self.lines) if isinstance(holds, str) else holds(self.lines)
 
     def resize(self, columns: int, lines: int) -> None:
         """Make the window another size."""

@@ -108,7 +108,7 @@ def test_a_line_that_is_lost_and_comes_again() -> None:
         switch(door, M421=1)
         shown.until("M421=1")
         gone = door.simulation.plcs.pop(1)
-        lines = shown.until("NO ANSWER since")
+        lines = shown.until("LINE LOST since")
         assert "trying again" in " ".join(lines)
         assert "M421=?" in "\n".join(lines)  # what is not known now is not shown as if it were
         assert "rounds/s" not in lines[0]
@@ -116,7 +116,7 @@ def test_a_line_that_is_lost_and_comes_again() -> None:
         shown.until(lambda lines: lines[0].startswith("N0001"))
         door.simulation.plcs[1] = gone
         lines = shown.until("M421=1")
-        assert "NO ANSWER" not in "\n".join(lines)
+        assert "LINE LOST" not in "\n".join(lines)
         shown.type("q")
         assert shown.end() == 0
 
@@ -153,6 +153,13 @@ def test_a_signal_leaves_the_terminal_as_it_was(number: signal.Signals) -> None:
         assert shown.end() == 130
         assert shown.shows_keys
     assert "Traceback" not in shown.text
+
+
+def test_it_ends_where_there_is_no_pause_between_two_rounds() -> None:
+    with press() as door, terminal(door, "--interval", "0") as shown:
+        shown.until("rounds/s")
+        shown.type("q")
+        assert shown.end() == 0
 
 
 def test_no_plc_from_the_beginning() -> None:
