@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from fatektool.errors import FatektoolError, LineError, PortBusy, TransportClosed, UsageError
 from fatektool.transport.nearly import meant, next_step
+from fatektool.transport.serial_line.windows import Kind, windows_error
 
 if TYPE_CHECKING:
     from fatektool.transport.base import LineSettings
@@ -23,7 +24,7 @@ def open_error(target: str, settings: LineSettings, error: Exception) -> Fatekto
     cause: BaseException = error
     if type(error.__context__).__name__ == "error":  # of termios: pyserial keeps its number only as text
         cause = error.__context__ or error
-    if wrong := _wrong_url(target, error):
+    if wrong := _wrong_url(target, error) or _windows_error(target, settings, error):
         return wrong
     number, text = getattr(error, "errno", None), str(error)
     if number is None and len(cause.args) == 2 and isinstance(cause.args[0], int):
@@ -47,6 +48,52 @@ def open_error(target: str, settings: LineSettings, error: Exception) -> Fatekto
         )
     hint = "check the URL" if "://" in target else "'fatektool ports' lists the serial ports"
     return LineError(f"{target}: cannot open: {text}", hint=hint)
+
+
+def _windows_error(target: str, settings: LineSettings, error: Exception) -> LineError | None:
+    """The error for a port that Windows does not open or set up; None if it is of another system."""
+    found = windows_error(error)
+    if found is None:
+        return None
+    match found.kind:
+        case Kind.MISSING:
+            return LineError(f"{target}: no such port", hint=next_step(target))
+        case Kind.BUSY:
+            return PortBusy(
+                f"{target}: another program has the port open ({found})",
+                hint="close that program (a terminal, the vendor's software), or wait and run again",
+            )
+        case Kind.NOT_SUPPORTED:
+            return LineError(
+                f"{target}: cannot be used as a serial port at {settings}: {found.text} ({found})",
+                hint="check the name; check that the adapter supports this --baud and --format",
+            )
+        case Kind.BROKEN:
+            return LineError(
+                f"{target}: {found.text} ({found})",
+                hint="unplug the adapter and plug it in again; if that does not help, install its "
+                "manufacturer's driver",
+            )
+        case Kind.GONE:
+            return LineError(
+                f"{target}: {found.text} ({found})",
+                hint="check that the adapter is plugged in; unplug it, plug it in again and run again",
+            )
+
+
+def port_lost(target: str, reason: object) -> TransportClosed:
+    """The error of a device that was opened, and fails while it is used.
+
+    Args:
+        target: as the user wrote it.
+        reason: the error of pyserial or the system, or the reason in words.
+    """
+    found = windows_error(reason) if isinstance(reason, Exception) else None
+    text = f"{found.text} ({found})" if found else str(reason)
+    return TransportClosed(
+        f"{target}: the port is lost: {text}",
+        hint="check that the adapter is plugged in, and run again",
+    )
 
 
 def network_error(

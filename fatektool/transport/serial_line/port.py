@@ -20,10 +20,10 @@ import sys
 from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.callbacks import ignore
-from fatektool.errors import TransportClosed, TransportTimeout
+from fatektool.errors import TransportTimeout
 from fatektool.transport.base import DRAIN_LIMIT, MOST_SAID, WRITE_TIMEOUT_S, LineSettings, Transport
 from fatektool.transport.said import said_text
-from fatektool.transport.serial_line.errors import gateway_closed, network_error, open_error
+from fatektool.transport.serial_line.errors import gateway_closed, network_error, open_error, port_lost
 from fatektool.transport.serial_line.settings import (
     PORT_ERRORS,
     check_parity,
@@ -36,6 +36,8 @@ from fatektool.transport.wait import readable, writable
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from fatektool.errors import TransportClosed
 
 _SLICE_S: Final = 0.02
 
@@ -153,10 +155,7 @@ class SerialTransport(Transport):
         self.close()
         if self._again is not None:
             return gateway_closed(self.name, said_text(bytes(self._first)))
-        return TransportClosed(
-            f"{self.name}: the port is lost: {error}",
-            hint="check that the adapter is plugged in, and run again",
-        )
+        return port_lost(self.name, error)
 
     def read(self, max_bytes: int, timeout_s: float) -> bytes:
         """Read what is received first, at most ``max_bytes``."""
@@ -239,10 +238,7 @@ class DeviceTransport(Transport):
 
     def _gone(self, reason: object) -> TransportClosed:
         self.close()
-        return TransportClosed(
-            f"{self.name}: the port is lost: {reason}",
-            hint="check that the adapter is plugged in, and run again",
-        )
+        return port_lost(self.name, reason)
 
     def read(self, max_bytes: int, timeout_s: float) -> bytes:
         """Read what is received first, at most ``max_bytes``."""

@@ -1,0 +1,96 @@
+"""The error numbers of Windows for serial ports, and what each means.
+
+pyserial keeps the number only as text, at the end of its own message, and before it a message in the language
+of the system::
+
+    could not open port 'COM3': PermissionError(13, 'Zugriff verweigert', None, 5)
+    Cannot configure port, something went wrong. Original message: OSError(22, 'The parameter …', None, 87)
+    ClearCommError failed (PermissionError(13, 'The device does not recognize the command.', None, 22))
+
+Source of the numbers: winerror.h.
+"""
+
+from __future__ import annotations
+
+import re
+from enum import Enum
+from typing import Final, NamedTuple
+
+_NUMBER: Final = re.compile(r"\w+\(-?\d+, .*, None, (\d+)\)", re.DOTALL)
+
+
+class Kind(Enum):
+    """What a number means for the user."""
+
+    MISSING = "missing"
+    BUSY = "busy"
+    NOT_SUPPORTED = "not supported"
+    BROKEN = "broken"
+    GONE = "gone"
+
+
+class WindowsError(NamedTuple):
+    """One error number.
+
+    Attributes:
+        number: of winerror.h.
+        kind: what it means when the port is opened or set up; while it is used, the device is gone.
+        text: the meaning, the same in each language of the system.
+    """
+
+    number: int
+    kind: Kind
+    text: str
+
+    def __str__(self) -> str:
+        return f"Windows error {self.number}"
+
+
+_TABLE: Final = (
+    WindowsError(1, Kind.NOT_SUPPORTED, "it is not a serial port"),
+    WindowsError(2, Kind.MISSING, "no such port"),
+    WindowsError(3, Kind.MISSING, "no such port"),
+    WindowsError(5, Kind.BUSY, "access denied"),
+    WindowsError(6, Kind.NOT_SUPPORTED, "it is not a serial port"),
+    WindowsError(15, Kind.MISSING, "no such port"),
+    WindowsError(20, Kind.GONE, "the device is not connected"),
+    WindowsError(21, Kind.GONE, "the device is not ready"),
+    WindowsError(22, Kind.GONE, "the device does not accept commands"),
+    WindowsError(31, Kind.BROKEN, "the device or its driver does not work"),
+    WindowsError(32, Kind.BUSY, "another program has the port open"),
+    WindowsError(50, Kind.NOT_SUPPORTED, "the driver does not support this"),
+    WindowsError(53, Kind.MISSING, "no such port"),
+    WindowsError(55, Kind.GONE, "the device is no longer available"),
+    WindowsError(87, Kind.NOT_SUPPORTED, "the driver does not accept this baud rate or format"),
+    WindowsError(121, Kind.GONE, "the device does not answer the driver"),
+    WindowsError(123, Kind.MISSING, "no such port"),
+    WindowsError(161, Kind.MISSING, "no such port"),
+    WindowsError(170, Kind.BUSY, "another program has the port open"),
+    WindowsError(433, Kind.GONE, "the device no longer exists"),
+    WindowsError(617, Kind.GONE, "the device was removed"),
+    WindowsError(995, Kind.GONE, "the driver aborted the operation"),
+    WindowsError(1117, Kind.BROKEN, "the device or its driver does not work"),
+    WindowsError(1167, Kind.GONE, "the device is not connected"),
+    WindowsError(1450, Kind.BROKEN, "the system has no resources for the device"),
+    WindowsError(1617, Kind.GONE, "the device was removed"),
+)
+ERRORS: Final = {each.number: each for each in _TABLE}
+
+
+def windows_number(error: BaseException) -> int | None:
+    """The number that Windows gave; None if the error is of another system.
+
+    Args:
+        error: of pyserial, or the OSError itself.
+    """
+    number = getattr(error, "winerror", None)
+    if isinstance(number, int):
+        return number
+    found = _NUMBER.search(str(error))
+    return int(found[1]) if found else None
+
+
+def windows_error(error: BaseException) -> WindowsError | None:
+    """The meaning of an error; None if it is of another system, or has no number of the table."""
+    number = windows_number(error)
+    return None if number is None else ERRORS.get(number)
