@@ -1,24 +1,24 @@
-"""A simulated FATEK PLC with memory: to try a client out where there is no PLC.
+"""A simulated FATEK PLC with memory, to test a client without a PLC.
 
 ::
 
-    listen    one thread; listeners on TCP, UDP, a pty    (or, in the same process, none at all)
+    listen    one thread; listeners on TCP, UDP, a pty    (none in the same process)
        │
-    line      bytes and times in, bytes and times out    <── faults   what goes wrong, seeded
+    line      bytes and times in, bytes and times out    <── faults   injected errors, seeded
        │
-    slaves    what a line needs of a protocol: frames cut, requests answered
-       ├── fatek               what FACON and the M-series share: commands, fields
-       ├── facon, mseries      frames, and how fields are written
+    slaves    a protocol for a line: splits frames, answers requests
+       ├── fatek               common to FACON and the M-series: commands, fields
+       ├── facon, mseries      frames, and the notation of fields
        └── modbus              functions and the map; rtu, ascii, tcp: frames
        │
-    plc       what a PLC does, in values; refusal says no
+    plc       the operations of a PLC, as values; refusal: the errors
        ├── models, memory, elements, program
        └── state      its memory in a file
 
-    build     puts all of it together
-    replay    instead of all from line to plc: answers as a PLC did that was recorded
+    build     builds all of it
+    replay    replaces all from line to plc: the answers of a recorded PLC
 
-It shares no code with the client: both were written from the papers, so that a misreading of one shows
-as a disagreement of the two. From ``line`` down there is no I/O, no clock and no thread, but for the
-state file.
+It shares no code with the client: both were written from the papers, so a wrong interpretation in one shows
+as a difference between the two. From ``line`` down there is no I/O, no clock and no thread, except the state
+file.
 """

@@ -1,14 +1,14 @@
-"""Puts a simulator together from what a user can say about it.
+"""Builds a simulator from the options of a user.
 
 ::
 
     build_simulation(...) ──> Simulation ──┬── plcs       the PLCs by station, shared by all lines
-                                           ├── faults     what goes wrong, shared too
+                                           ├── faults     injected errors, shared too
                                            ├── state      the file that keeps their memory
                                            └── line()     a new line: one for each connection
 
-With a state file the memory in it is what counts: a model that contradicts it is refused, and
-``ladder_words`` and ``program`` fill a new file only.
+With a state file, its memory has priority: another model is refused, and ``ladder_words`` and ``program`` are
+used only for a new file.
 """
 
 from __future__ import annotations
@@ -37,16 +37,16 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class Simulation:
-    """PLCs with the faults, the pace and the file that they share.
+    """PLCs with their common faults, speed and file.
 
     Args:
         plcs: the PLCs by station.
         make_slave: a new slave of the protocol.
-        faults: what goes wrong; None for nothing.
-        state: where the memory is kept; None for nowhere.
-        baud: bits a second; None for a wire that takes no time.
+        faults: injected errors; None for none.
+        state: the file with the memory; None for none.
+        baud: bits per second; None for no wire time.
         bits_per_char: with start, parity and stop bits.
-        scan_s: the PLCs' time to answer.
+        scan_s: the PLCs' time to answer, in seconds.
         latency_timer_s: see ``SimulatedLine``.
     """
 
@@ -70,7 +70,7 @@ class Simulation:
             self.faults.power_on()
 
     def line(self, *, whole_answers: bool = False) -> SimulatedLine:
-        """A new line to the PLCs; ``whole_answers`` for a medium of datagrams."""
+        """A new line to the PLCs; ``whole_answers`` for a medium with datagrams."""
         return SimulatedLine(
             self.make_slave(self.plcs),
             self.faults,
@@ -83,7 +83,7 @@ class Simulation:
         )
 
     def save_if_changed(self) -> bool:
-        """Write the state file if there is one and it is behind; True if it was written."""
+        """Write the state file, if there is one and it is not up to date; True if it was written."""
         return self.state is not None and self.state.save_if_changed(self.plcs)
 
 
@@ -97,7 +97,7 @@ def build_plcs(
     program_swapped: bool = False,
     program_commands: bool = True,
 ) -> dict[int, SimulatedPlc]:
-    """New PLCs, one a station, all with the same program.
+    """New PLCs, one for each station, all with the same program.
 
     Args:
         stations: 1 to 254, each once.
@@ -105,8 +105,8 @@ def build_plcs(
         ladder_words: another size of the program memory; by default that of ``program`` or the model.
         program: pages 0..N; by default a demonstration program.
         program_seed: varies the demonstration program.
-        program_swapped: exchange the bytes of each word of an FBs demonstration program.
-        program_commands: False for PLCs that refuse to have their program read or written.
+        program_swapped: swap the bytes of each word of an FBs demonstration program.
+        program_commands: False for PLCs that refuse reads and writes of their program.
     """
     chosen, pages = _with_program(
         _model(model or DEFAULT_MODEL),
@@ -151,36 +151,34 @@ def build_simulation(
 
     Args:
         stations: by default those of the state file, or 1.
-        model: by default that of the state file, or the one that ``SLAVES`` names for the protocol.
+        model: by default that of the state file, or that of the protocol in ``SLAVES``.
         protocol: a name of ``SLAVES``.
         ladder_words: see ``build_plcs``.
         program: see ``build_plcs``.
         program_seed: see ``build_plcs``.
         program_swapped: see ``build_plcs``.
         program_commands: see ``build_plcs``.
-        error_character: see ``FaconSlave``; False is for FACON alone.
-        state: keeps the memory in this file; it is made if it is not there.
+        error_character: see ``FaconSlave``; False is only for FACON.
+        state: keeps the memory in this file, which is created if it does not exist.
         faults: ``KIND=P`` strings.
         seed: of the faults.
         slow_s: the delay of a slow answer.
-        baud: bits a second; None for a wire that takes no time.
-        bits_per_char: with start, parity and stop bits; by default those that ``SLAVES`` names.
+        baud: bits per second; None for no wire time.
+        bits_per_char: with start, parity and stop bits; by default those in ``SLAVES``.
         scan_ms: the PLCs' time to answer.
         latency_timer_ms: of a USB adapter at the client's end; 0 for none.
     """
     if protocol not in SLAVES:
-        raise UsageError(f"no protocol {protocol!r}: choose one of {', '.join(SLAVES)}")
+        raise UsageError(f"protocol {protocol!r}: expected one of {', '.join(SLAVES)}")
     slave = SLAVES[protocol]
     make_slave = slave.make if error_character else slave.make_without_error_character
     if make_slave is None:
-        raise UsageError(f"{protocol}: its answers have an error code in every paper")
+        raise UsageError(f"{protocol}: only FACON has answers without an error character")
     plan = parse_faults(faults)
     if (baud is not None and not baud > 0) or not scan_ms >= 0:
-        raise UsageError(
-            f"a line has a baud rate above 0 and a scan time from 0 ms, not {baud} and {scan_ms}"
-        )
+        raise UsageError(f"expected a baud rate above 0 and a scan time from 0 ms, got {baud} and {scan_ms}")
     if not 0 <= latency_timer_ms < inf:
-        raise UsageError(f"a latency timer is of 0 ms or more, not {latency_timer_ms}")
+        raise UsageError(f"latency timer: expected 0 ms or more, got {latency_timer_ms}")
     state_file = None if state is None else StateFile(state)
     kept = None if state_file is None else state_file.load()
     if kept is None or state_file is None:
@@ -208,7 +206,7 @@ def build_simulation(
         scan_ms / 1000,
         latency_timer_ms / 1000,
     )
-    # At once, so that a path that cannot be written is known before the first request.
+    # Written now, so that a path that cannot be written is known before the first request.
     simulation.save_if_changed()
     return simulation
 
@@ -216,12 +214,12 @@ def build_simulation(
 def _with_program(
     chosen: Model, pages: list[bytes] | None, ladder_words: int | None, seed: int, *, swapped: bool
 ) -> tuple[Model, list[bytes]]:
-    """The model with the ladder size and the number of pages that its program asks for, and the program."""
+    """The model with the ladder size and the number of pages of its program, and the program."""
     if ladder_words is None and pages is not None:
         ladder_words = _ladder_words(pages, chosen)
     if ladder_words is not None:
         if not 1 <= ladder_words <= MAX_LADDER_WORDS:
-            raise UsageError(f"a ladder has 1 to {MAX_LADDER_WORDS} words, not {ladder_words}")
+            raise UsageError(f"ladder size: expected 1 to {MAX_LADDER_WORDS} words, got {ladder_words}")
         chosen = replace(chosen, ladder_words=ladder_words)
     if pages is None:
         pages = program_of(chosen, seed=seed, swapped=swapped)
@@ -238,12 +236,12 @@ def _with_program(
 def _model(name: str) -> Model:
     model = MODELS.get(name.lower())
     if model is None:
-        raise UsageError(f"no model {name!r}: choose one of {', '.join(MODELS)}")
+        raise UsageError(f"model {name!r}: expected one of {', '.join(MODELS)}")
     return model
 
 
 def _ladder_words(pages: Sequence[bytes], model: Model) -> int:
-    """The ladder size of a program: what its header says, if that agrees with its length."""
+    """The ladder size of a program: that in its header, if it agrees with its length."""
     stated = int.from_bytes(pages[0][4:6], "big") if pages else 0
     for words in (stated, model.ladder_words):
         if words and -(-words // WORDS_PER_PAGE) + 1 == len(pages):
@@ -252,7 +250,7 @@ def _ladder_words(pages: Sequence[bytes], model: Model) -> int:
 
 
 def _may_end_early(pages: Sequence[bytes], ladder_words: int) -> bool:
-    """True for a program of a PLC that refused the pages past its end, and for one that gave one more."""
+    """True for a program of a PLC that refused the pages after its end, or gave one more."""
     if not pages:
         return False
     most = -(-ladder_words // WORDS_PER_PAGE) + 1
@@ -268,14 +266,14 @@ def _checked(
     wanted = None if stations is None else sorted(stations)
     if wanted is not None and wanted != sorted(plcs):
         raise DataError(
-            f"{state.path}: holds the stations {', '.join(map(str, sorted(plcs)))},"
-            f" not {', '.join(map(str, wanted))}"
+            f"{state.path}: expected the stations {', '.join(map(str, wanted))},"
+            f" got {', '.join(map(str, sorted(plcs)))}"
         )
     if model is not None:
         name = _model(model).name
         for plc in kept:
             if plc.model.name != name:
                 raise DataError(
-                    f"{state.path}: station {plc.station} is of model {plc.model.name}, not {name}"
+                    f"{state.path}: station {plc.station}: expected the model {name}, got {plc.model.name}"
                 )
     return plcs

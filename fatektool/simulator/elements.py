@@ -1,7 +1,6 @@
-"""What can be named in a PLC's memory, without how a protocol spells it.
+"""The elements in a PLC's memory, without the notation of a protocol.
 
-An element is a symbol and an address. The symbol says which *area* is meant and how wide one
-element is::
+An element is a symbol and an address. The symbol decides the *area* and the width of one element::
 
     symbol            area        bits  step   example
     X Y M S T C       discretes      1     1   Y9
@@ -10,8 +9,8 @@ element is::
     R D F RT RC       registers     16     1   R12
     DR DD DF DRT DRC  registers     32     2   DR0   = R1 * 65536 + R0
 
-``step`` is what one element takes of its area, hence the distance of consecutive elements
-(FACON paper, section 4.1).
+``step`` is the size of one element in its area, and so the distance of consecutive elements (FACON paper,
+section 4.1).
 """
 
 from __future__ import annotations
@@ -32,7 +31,7 @@ class SymbolKind:
         symbol: as written in a request, ``DWM``.
         area: of its elements, ``M``.
         bits: the width of one element: 1, 16 or 32.
-        step: how much of the area one element takes.
+        step: the size of one element in the area.
         packed: True for words made of discretes.
     """
 
@@ -44,7 +43,7 @@ class SymbolKind:
 
     @property
     def words(self) -> int:
-        """What one element counts against a request's limit: a discrete as much as a word."""
+        """Words that one element counts in a request's limit: a discrete as much as a word."""
         return 2 if self.bits == 32 else 1
 
 
@@ -64,7 +63,7 @@ KINDS = _kinds()
 
 
 def kind_of(symbol: str, *widths: int) -> SymbolKind:
-    """The kind of ``symbol``; refuses an unknown one, and one whose width is none of ``widths``."""
+    """The kind of ``symbol``; refuses an unknown one, and one with another width than ``widths``."""
     kind = KINDS.get(symbol)
     if kind is None or (widths and kind.bits not in widths):
         raise Refusal(RefusalCode.ILLEGAL_FORMAT)

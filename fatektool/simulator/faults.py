@@ -1,29 +1,29 @@
-"""Faults of a line and a PLC, injected on purpose and the same for the same seed.
+"""Injected faults of a line and a PLC, the same for the same seed.
 
 ::
 
-    drop          the answer does not come
+    drop          no answer
     flip          one of the low 7 bits of one byte of the answer is wrong
     truncate      the answer ends too early, after its first byte at the soonest
-    noise         1 to 8 random bytes come before the answer, those that delimit one among them
-    duplicate     the answer comes twice
-    late          the answer is held back until the next request was received
-    slow          the answer comes 0.8 s later
-    wrong-station the answer bears another station, its checksum right
-    lying-write   a write is acknowledged and not made
-    echo          what arrives is sent back first, as on a two-wire line
-    wrong-line    baud or format do not fit: the request is not understood, noise about as long comes back
-    twins         two PLCs have this station and fall out of step: their answers come one right behind the
-                  other, or over each other, one byte apart: what either holds low is low
+    noise         1 to 8 random bytes before the answer, also those that delimit one
+    duplicate     the answer is sent twice
+    late          the answer is sent only after the next request was received
+    slow          the answer is sent 0.8 s later
+    wrong-station the answer has another station, with a correct checksum
+    lying-write   a write is acknowledged, but not made
+    echo          the request is sent back first, as on a two-wire line
+    wrong-line    wrong baud or format: the request is not understood, about as many bytes of noise are sent
+    twins         two PLCs with this station: one answer follows the other at once, or they overlap, one byte
+                  apart, and a bit is 0 if it is 0 in either
     bit-errors=P  one of the low 7 bits of a byte of the answer is wrong, with probability P for each byte:
-                  the longer an answer, the likelier it is spoiled
-    power-cut=N   the N-th request to write a program page takes the power away
+                  so long answers have more errors
+    power-cut=N   the power fails at the N-th request to write a program page
 
-Each but the last two has a probability, drawn for each answer (``echo``: for each chunk of bytes that
-arrives). Each kind draws from a generator of its own, so that one more kind leaves untouched which
-answers the others hit. A dropped answer is hit by nothing else, nor is what a wrong line makes of one.
-Twins that keep in step, as all are without a strike, look like one PLC. The noise of a wrong line never
-ends as a frame does, so that none is ever found in it.
+Each kind except the last two has a probability, drawn for each answer (``echo``: for each piece of received
+bytes). Each kind has its own generator, so another kind does not change which answers the others hit. A
+dropped answer and the noise of a wrong line have no other faults. Without a hit, twins answer at the same
+time and look like one PLC. The noise of a wrong line never ends like a frame, so no frame is ever found in
+it.
 """
 
 from __future__ import annotations
@@ -66,11 +66,11 @@ _STATIONS = 0xFE
 
 @dataclass(frozen=True, slots=True)
 class FaultPlan:
-    """Which faults, how often.
+    """The kinds of faults and their probabilities.
 
     Args:
         probabilities: kind to probability, 0 to 1.
-        power_cut: the write of a page, counted from 1, at which the power goes; None for never.
+        power_cut: the write of a page, counted from 1, at which the power fails; None for never.
     """
 
     probabilities: Mapping[str, float] = field(default_factory=dict)
@@ -85,14 +85,14 @@ def parse_faults(texts: Iterable[str]) -> FaultPlan:
         kind, equals, value = text.partition("=")
         if kind not in FAULT_KINDS or not equals:
             raise UsageError(
-                f"no fault {text!r}: write KIND=P, P from 0 to 1, KIND one of"
+                f"fault {text!r}: expected KIND=P, P from 0 to 1, KIND one of"
                 f" {', '.join(PROBABILITY_KINDS)}, {BIT_ERRORS}; or {POWER_CUT}=N"
             )
         if kind in probabilities or (kind == POWER_CUT and power_cut is not None):
             raise UsageError(f"fault {kind} is given twice")
         if kind == POWER_CUT:
             if not (value.isascii() and value.isdigit() and int(value)):
-                raise UsageError(f"fault {kind}: the write of a page is counted from 1, not {value!r}")
+                raise UsageError(f"fault {kind}: expected the number of a page write, from 1, got {value!r}")
             power_cut = int(value)
         else:
             probabilities[kind] = _probability(kind, value)
@@ -105,18 +105,18 @@ def _probability(kind: str, text: str) -> float:
     except ValueError:
         value = -1.0
     if not 0 <= value <= 1:  # refuses NaN too
-        raise UsageError(f"fault {kind}: a probability is a number from 0 to 1, not {text!r}")
+        raise UsageError(f"fault {kind}: expected a probability from 0 to 1, got {text!r}")
     return value
 
 
 @dataclass(slots=True)
 class SpoiledAnswer:
-    """What becomes of one answer.
+    """One answer with its faults.
 
     Args:
-        copies: the bytes to send, one entry for each time; none if it is dropped.
-        delay_s: how much later than due.
-        late: True if it is held back until the next request.
+        copies: the bytes to send, one entry for each copy; none if it is dropped.
+        delay_s: delay in seconds.
+        late: True if it is sent only after the next request.
     """
 
     copies: list[bytes]
@@ -125,14 +125,14 @@ class SpoiledAnswer:
 
 
 class Faults:
-    """A plan at work: shared by all connections of one simulator, as the mains are.
+    """The injected faults of one simulator, shared by all its connections.
 
     Args:
-        plan: which faults, how often.
+        plan: the kinds and their probabilities.
         seed: the same seed and the same requests give the same faults.
         slow_s: the delay of a slow answer.
 
-    ``counts`` has how often each kind struck.
+    ``counts`` has the number of hits of each kind.
     """
 
     def __init__(self, plan: FaultPlan, *, seed: int = 0, slow_s: float = DEFAULT_SLOW_S) -> None:
@@ -144,15 +144,15 @@ class Faults:
         self._page_writes = 0
 
     def power_on(self) -> None:
-        """End a power cut; what the memory held then, it holds now."""
+        """End a power cut; the memory is unchanged."""
         self.powered = True
 
     def echoes(self) -> bool:
-        """Whether the chunk of bytes that arrives is sent back."""
+        """Whether the received bytes are sent back."""
         return self._strikes("echo")
 
     def answer(self, slave: Slave, request: RequestFrame) -> bytes | None:
-        """Have ``request`` executed, or not: the power may go, a write may be acknowledged and not done."""
+        """Execute ``request``, unless the power fails, or a write is acknowledged but not made."""
         if request.kind in {RequestKind.OTHER, RequestKind.LOOPBACK}:
             return slave.answer(request)
         plc = addressed(slave.plcs, request.station)
@@ -172,7 +172,7 @@ class Faults:
             plc.acknowledge_only = False
 
     def spoil(self, slave: Slave, request: RequestFrame, answer: bytes) -> SpoiledAnswer:
-        """Do to an answer what was drawn for it."""
+        """Apply the drawn faults to an answer."""
         if self._strikes("drop"):
             return SpoiledAnswer([])
         if self._strikes("wrong-station"):
@@ -195,9 +195,9 @@ class Faults:
         return SpoiledAnswer(copies, delay_s, late=self._strikes("late"))
 
     def garbage(self, slave: Slave, request: RequestFrame) -> bytes | None:
-        """What comes back for a request that no PLC could understand; None if it was understood.
+        """The noise for a request that no PLC understands; None if it is understood.
 
-        It is empty for a broadcast, which no PLC answers, understood or not.
+        It is empty for a broadcast, which no PLC answers.
         """
         broadcast = request.station == BROADCAST
         here = broadcast or addressed(slave.plcs, request.station) is not None
@@ -211,7 +211,7 @@ class Faults:
         return bytes(byte + (byte >= never) for byte in (random.randrange(255) for _ in range(length)))
 
     def _noise(self, delimiters: tuple[bytes, ...]) -> bytes:
-        # One draw in four delimits a frame: plain random bytes would hardly ever do so.
+        # One draw in four delimits a frame, which is rare in random bytes.
         random = self._random["noise"]
         noise = bytearray()
         count = random.randint(1, _MAX_NOISE)
@@ -232,7 +232,7 @@ class Faults:
     def _from_twins(self, answer: bytes) -> list[bytes]:
         if self._random["twins"].random() < 1 / 2:
             return [answer, answer]
-        # A line at rest is high, all ones; an end of it that is held low wins over one that is not.
+        # An idle line is high, all ones; a low output wins over a high one.
         return [bytes(map(and_, answer + b"\xff", b"\xff" + answer))]
 
     def _strikes(self, kind: str) -> bool:

@@ -3,20 +3,19 @@
 ::
 
     receive(request, now)
-       │  the request crosses the wire        len * bits_per_char / baud
+       │  the request on the wire             len * bits_per_char / baud
        │  the PLC scans and answers           scan_s
-       v  the answer crosses, in pieces       about 2 ms of wire time each, due with their last char
+       v  the answer on the wire, in pieces   about 2 ms of wire time each, due with their last char
     [(due, piece), (due, piece) ...]
 
-Times are on whatever clock ``now`` is of. They come from the ideal timeline alone: a caller that is
-late with one piece is not later with the next. The wires of both directions are paced by themselves, as
-on RS-232: a request that arrives while an earlier one still crosses waits for it, an answer waits for
-the answers before it, so that due times never decrease from one call to the next.
+Times are those of the clock of ``now``. They are ideal times: if a caller is late with one piece, the next is
+not later. The wires of both directions have their own times, as on RS-232: a request waits for an earlier one
+on the wire, an answer waits for the answers before it, so due times never decrease from one call to the next.
 
-Without a baud rate the wire takes no time and an answer is one piece.
+Without a baud rate there is no wire time, and an answer is one piece.
 
-A USB adapter with a *latency timer* hands on what it has received at its ticks only: then a piece is due at
-the next tick after it crossed. Ticks are multiples of the timer on the clock that ``now`` is of.
+A USB adapter with a *latency timer* passes on received bytes only at its ticks: then a piece is due at the
+next tick. Ticks are multiples of the timer on the clock of ``now``.
 """
 
 from __future__ import annotations
@@ -41,15 +40,15 @@ class SimulatedLine:
     """One connection to the PLCs of a slave.
 
     Args:
-        slave: cuts and answers requests; used by this line alone.
-        faults: what goes wrong; None for nothing. Shared by all lines of a simulator.
-        baud: bits a second; None for a wire that takes no time.
+        slave: splits the bytes into requests and answers them; used only by this line.
+        faults: injected errors; None for none. Shared by all lines of a simulator.
+        baud: bits per second; None for no wire time.
         bits_per_char: with start, parity and stop bits.
         scan_s: the PLC's time from the end of a request to the start of its answer.
-        piece_s: wire time of one piece of an answer; ``WHOLE_ANSWERS`` for a medium of datagrams.
-        latency_timer_s: seconds from tick to tick of a USB adapter, 16 ms as most are delivered; 0 for none.
-        after_request: called when a request was executed, before its answer is given out: the place
-            to save the memory, so that nothing is acknowledged that could be lost.
+        piece_s: wire time of one piece of an answer; ``WHOLE_ANSWERS`` for a medium with datagrams.
+        latency_timer_s: seconds between the ticks of a USB adapter, often 16 ms by default; 0 for none.
+        after_request: called after a request is executed, before its answer is sent: saves the memory, so
+            that nothing is acknowledged that could be lost.
     """
 
     def __init__(
@@ -81,7 +80,7 @@ class SimulatedLine:
         return self._faults is None or self._faults.powered
 
     def receive(self, data: bytes, now: float) -> list[tuple[float, bytes]]:
-        """Take bytes of requests; give what comes back, as (due time, bytes), times never decreasing."""
+        """Receive bytes of requests; returns the answers as (due time, bytes), times never decreasing."""
         due: list[tuple[float, bytes]] = []
         if not self.powered:
             return due
@@ -99,7 +98,7 @@ class SimulatedLine:
         return due
 
     def datagram(self, data: bytes, now: float) -> list[tuple[float, bytes]]:
-        """Like ``receive`` for a medium in which every message is complete."""
+        """Like ``receive``, for a medium in which every message is complete."""
         self._slave.reset()
         due = self.receive(data, now)
         self._slave.reset()
@@ -142,7 +141,7 @@ class SimulatedLine:
         self._answer_wire_free = start + len(data) * char_s
 
     def _handed_on(self, received: float) -> float:
-        """When a piece that has crossed the wire comes out of the adapter: at the tick after, never at it."""
+        """The time at which the adapter passes on a received piece: the next tick, never the same."""
         timer_s = self._latency_timer_s
         if not timer_s:
             return received

@@ -1,18 +1,17 @@
-"""A PLC's memory: discretes with their disable flags, registers, and the views over both.
+"""A PLC's memory: discretes with their disable flags, registers, and views of both.
 
-Three rules make it more than a set of arrays; in each the PLC acknowledges a write that has no
-effect, as the protocol has no code for 'not taken':
+In three cases the PLC acknowledges a write that has no effect, because the protocol has no code for that:
 
-* A **disabled** discrete keeps its state whatever writes it; only *set* and *reset* (command 42)
-  still change it. That is what disabling is for: to force a state against the program.
-* An **enabled X** follows its terminal. Nothing on the line moves it. ``set_input`` is the terminal.
-* **R3840..R3903** are the analog and special inputs; only ``set_input_register`` fills them.
+* A **disabled** discrete keeps its state after any write; only *set* and *reset* (command 42) change it. This
+is
+  the purpose of disabling: to force a state against the program.
+* An **enabled X** follows its terminal. No write changes it. ``set_input`` is the terminal.
+* **R3840..R3903** are the analog and special inputs; only ``set_input_register`` changes them.
 
-An address past the model is refused with A (FACON paper, section 4.1), and so is a packed word
-(WX, DWM ..) whose address is no multiple of 8, which that section calls for: the element does not
-exist. A packed word or 32-bit register must lie inside the model's range as a whole; one that is
-partly outside is refused with A too, since part of its value would be made up. An odd 32-bit register
-(DR15 = R16, R15) is fine. A write is made as a whole or not at all.
+An address above the model's range is refused with A (FACON paper, section 4.1), and so is a packed word (WX,
+DWM ..) whose address is not a multiple of 8, as that section requires: the element does not exist. A packed
+word or 32-bit register must be completely inside the model's range; one that is partly outside is refused
+with A too. An odd 32-bit register (DR15 = R16, R15) is valid. A write is made completely or not at all.
 """
 
 from __future__ import annotations
@@ -32,14 +31,14 @@ if TYPE_CHECKING:
 
 INPUT_REGISTERS = range(3840, 3904)
 LONG_COUNTERS = range(200, 256)
-"""They have 32 bits: their low words are among the counters' registers, their high words beside them."""
+"""They have 32 bits: their low words are in the counters' registers, their high words separate."""
 
 _PACKED_MULTIPLE = 8
 _ASCII_BIT = bytes.maketrans(b"\x00\x01", b"01")
 
 
 class DiscreteAction(IntEnum):
-    """What command 42 does to one discrete."""
+    """The operations of command 42 on one discrete."""
 
     DISABLE = 1
     ENABLE = 2
@@ -50,7 +49,7 @@ class DiscreteAction(IntEnum):
 class SimulatedMemory:
     """The elements of one PLC, all zero and enabled at first.
 
-    ``revision`` grows with every write that was made.
+    ``revision`` increases with every write.
     """
 
     def __init__(self, model: Model) -> None:
@@ -77,14 +76,14 @@ class SimulatedMemory:
         self._sizes = counts | {area: len(table) for area, table in self.registers.items()}
 
     def check(self, kind: SymbolKind, address: int, count: int) -> int:
-        """The end in the area of ``count`` elements from ``address``; refuses what is past the model."""
+        """The end in the area of ``count`` elements from ``address``; refuses it above the model's range."""
         end = address + count * kind.step
         if address < 0 or end > self._sizes[kind.area] or (kind.packed and address % _PACKED_MULTIPLE):
             raise Refusal(RefusalCode.ILLEGAL_ADDRESS)
         return end
 
     def read_discretes(self, symbol: str, address: int, count: int) -> bytes:
-        """States of consecutive discretes, a byte 0 or 1 each."""
+        """States of consecutive discretes, one byte 0 or 1 each."""
         kind = kind_of(symbol, 1)
         return bytes(self.status[kind.area][address : self.check(kind, address, count)])
 
@@ -120,7 +119,7 @@ class SimulatedMemory:
         kind = kind_of(symbol, 16, 32)
         end = self.check(kind, address, count)
         if kind.packed:
-            # int() wants the highest bit first, so the stretch is read from its end.
+            # int() needs the highest bit first, so the range is read from its end.
             bits = bytes(self.status[kind.area][address:end]).translate(_ASCII_BIT)[::-1]
             starts = range(len(bits) - kind.bits, -1, -kind.bits)
             return [int(bits[start : start + kind.bits], 2) for start in starts]
@@ -181,14 +180,14 @@ class SimulatedMemory:
                 self.write_words(symbol, address, (value,))
 
     def set_input(self, address: int, value: int) -> None:
-        """Put a terminal X on or off; X follows unless it is disabled."""
+        """Switch a terminal X on or off; X follows unless it is disabled."""
         self.inputs[address] = bool(value)
         if not self.disabled["X"][address]:
             self.status["X"][address] = bool(value)
         self.revision += 1
 
     def set_input_register(self, address: int, value: int) -> None:
-        """Fill a register as the PLC's own hardware does, input registers included."""
+        """Set a register as the PLC's own hardware does, also input registers."""
         self.registers["R"][address] = value
         self.revision += 1
 

@@ -1,16 +1,16 @@
-"""The PLCs that can be simulated: what each says about itself, and how much memory it has.
+"""The PLCs that can be simulated: their status codes and memory sizes.
 
-The figures of ``fbe-28mc`` are those of the worked example of the FACON paper (section 4.2, command
-53), the ones of ``fbs-20mc`` those of the worked example in the paper's FBs edition. The others share them,
-but for what their name says: main unit, points and ladder size. Brief status byte 2 follows the table of
-command 40; the FBs example answers 40H there, which is not in that table. The M-series paper gives no sizes:
-``m-series`` has those of an FBs, with its file registers F.
+The values of ``fbe-28mc`` are those of the example in the FACON paper (section 4.2, command 53), those of
+``fbs-20mc`` the ones in the paper's FBs edition. The other models have the same, except main unit, points and
+ladder size, as in their names. Brief status byte 2 is from the table of command 40; the FBs example has 40H
+there, which is not in that table. The M-series paper gives no sizes: ``m-series`` has those of an FBs, with
+its file registers F.
 
 FBs and B1 models have a program image of their family, whose header is part of the ladder size, and refuse
-the pages past its end: ``fbs-24mc`` gives out no more than its code, the others all. That is a guess: no
-paper says that an FBs answers 4F at all.
+the pages after its end: ``fbs-24mc`` returns only its code, the others everything. This is assumed: no paper
+says that an FBs answers 4F at all.
 
-A model with another ladder is had by ``dataclasses.replace(model, ladder_words=...)``.
+``dataclasses.replace(model, ladder_words=...)`` makes a model with another ladder size.
 """
 
 from __future__ import annotations
@@ -26,19 +26,19 @@ PAGE_BYTES = 2 * WORDS_PER_PAGE
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """One model of PLC; counts are of elements, addresses run from 0 to the count less 1.
+    """One model of PLC; counts are numbers of elements, with addresses from 0 to the count - 1.
 
     Args:
-        name: lower case, as given on a command line.
+        name: in lower case, as on the command line.
         status2: byte 2 of the brief status: ladder size class.
         status3: byte 3 of the brief status: reserved.
         unit_type: byte 2 of the detailed status: 00 MA/MU, 01 MC.
         points_code: byte 3 of the detailed status; FB and FBs number it differently.
-        os_version: one digit a nibble: 31H is 3.1.
+        os_version: one digit in each nibble: 31H is 3.1.
         ladder_words: size of the program memory, 1 to 65535 words of 16 bits.
-        f_registers: file registers; 0 where the model has none. Not part of the detailed status.
-        image: how an FBs keeps its program; None for the paper's header.
-        pages: how many program pages there are, if a program came with another number than is usual.
+        f_registers: file registers; 0 if the model has none. Not in the detailed status.
+        image: the program image of an FBs; None for the paper's header.
+        pages: the number of program pages, if a program has another number than usual.
     """
 
     name: str
@@ -77,7 +77,7 @@ class Model:
 
     @property
     def has_fbs_image(self) -> bool:
-        """True if its program is an FBs image, for which a very small ladder has no space."""
+        """True if its program is an FBs image; a very small ladder has no space for one."""
         return self.image is not None and self.ladder_words > CODE
 
 

@@ -1,4 +1,4 @@
-"""One simulated PLC: what it does, in values, whatever protocol asks for it.
+"""One simulated PLC: its operations, as values, for all protocols.
 
 ::
 
@@ -6,10 +6,10 @@
     ├── model      what it is
     ├── memory     discretes and registers
     ├── pages      its ladder program, page 0 the header
-    └── flags      RUN, battery, ROM pack .. and the faults that keep it from running
+    └── flags      RUN, battery, ROM pack .. and the faults that prevent RUN
 
-A slave of a protocol parses a request, calls the operation, and turns a ``Refusal`` into that
-protocol's error answer. Nothing in here knows a frame.
+A slave of a protocol parses a request, calls the operation, and converts a ``Refusal`` into that protocol's
+error answer. There are no frames here.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _DETAILED_BYTES = 64
 
 
 class _Flag:
-    """A yes or no of the PLC whose change counts as a change of its state."""
+    """A flag of the PLC; its change is a change of the PLC's state."""
 
     def __set_name__(self, owner: type[SimulatedPlc], name: str) -> None:
         self._slot = f"_{name}"
@@ -56,7 +56,7 @@ STATUS_BITS = (
 """The flags of status byte 1, bit 0 first."""
 
 FLAGS = (*STATUS_BITS, "id_differs", "syntax_error", "unsupported_instruction", "password")
-"""All flags; the last four show in no status. Three make RUN be refused, ``password`` that pages are read."""
+"""All flags; the last four are in no status. Three prevent RUN, ``password`` prevents reads of pages."""
 
 _RUN_REFUSALS = (
     ("ladder_checksum_error", RefusalCode.LADDER_CHECKSUM),
@@ -71,12 +71,12 @@ class SimulatedPlc:
 
     Args:
         station: 1 to 254.
-        model: what it is; by default the FBE-28MC.
+        model: by default the FBE-28MC.
         pages: its program, as many pages of 128 bytes as the model has; a demonstration one if None.
-        program_commands: False makes it refuse to have its program read or written (error 4), as
-            an FBs may [E:fbs-program].
+        program_commands: False if it refuses reads and writes of its program (error 4), as an FBs may
+            [E:fbs-program].
 
-    ``acknowledge_only`` True makes every write be checked and acknowledged but not made: a fault.
+    With ``acknowledge_only``, every write is checked and acknowledged, but not made: a fault.
     """
 
     running = _Flag()
@@ -113,7 +113,7 @@ class SimulatedPlc:
 
     @property
     def revision(self) -> int:
-        """Grows with every change of memory, program or flags."""
+        """Increases with every change of memory, program or flags."""
         return self.changes + self.memory.revision
 
     # Status and mode -------------------------------------------------------------------------
@@ -148,7 +148,7 @@ class SimulatedPlc:
         return known.ljust(_DETAILED_BYTES, b"\x00")
 
     def run(self) -> None:
-        """Go to RUN, unless a fault of the program forbids it."""
+        """Go to RUN, unless a fault of the program prevents it."""
         for flag, code in _RUN_REFUSALS:
             if getattr(self, flag):
                 raise Refusal(code)
@@ -163,7 +163,7 @@ class SimulatedPlc:
     def read_page(self, page: int) -> bytes:
         """One page of 128 bytes; RUN or STOP.
 
-        What a PLC with a password answers is not known; 4, 'command can not execute', is a guess.
+        The answer of a PLC with a password is not known; 4, 'command can not execute', is assumed.
         """
         if not self.program_commands or self.password:
             raise Refusal(RefusalCode.ILLEGAL_FORMAT)
@@ -174,8 +174,8 @@ class SimulatedPlc:
     def write_page(self, page: int, content: bytes) -> None:
         """Replace one page of 128 bytes; in STOP and without a ROM pack only.
 
-        The paper gives code 3 to a ROM pack. For a running PLC it is silent; 4, 'command can not
-        execute', is the code that fits.
+        In the paper, code 3 is for a ROM pack. It has no code for a running PLC; 4, 'command can not
+        execute', is assumed.
         """
         if not self.program_commands:
             raise Refusal(RefusalCode.ILLEGAL_FORMAT)
@@ -255,9 +255,9 @@ class SimulatedPlc:
             self.memory.write_mixed(writes)
 
     def set_input(self, address: int, value: int) -> None:
-        """Put the terminal of X ``address`` on or off."""
+        """Switch the terminal of X ``address`` on or off."""
         self.memory.set_input(address, value)
 
     def set_input_register(self, address: int, value: int) -> None:
-        """Fill R ``address`` as the PLC's own hardware does."""
+        """Set R ``address`` as the PLC's own hardware does."""
         self.memory.set_input_register(address, value)

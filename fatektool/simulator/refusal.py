@@ -1,4 +1,4 @@
-"""How a simulated PLC says no: an error code, raised where it is noticed and answered by the slave.
+"""The refusal of a simulated PLC: an error code, raised by the PLC and sent by the slave.
 
 The codes are those of the FACON paper, section 3; the binary M-series protocol uses the same
 numbers, and a Modbus slave can map them to its exceptions.
@@ -10,7 +10,7 @@ from enum import IntEnum
 
 
 class RefusalCode(IntEnum):
-    """Why a request is not served."""
+    """The reason of a refusal."""
 
     ILLEGAL_VALUE = 0x2
     WRITE_PROHIBITED = 0x3
@@ -23,7 +23,7 @@ class RefusalCode(IntEnum):
 
 
 class Refusal(Exception):
-    """The PLC will not do what was asked; ``code`` goes into its answer.
+    """The PLC refuses a request; ``code`` is in its answer.
 
     Args:
         code: the error code, 1 to 15.

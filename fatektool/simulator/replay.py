@@ -1,19 +1,20 @@
-"""A recorded PLC: it answers each request as it did then, byte for byte, and as late.
+"""A recorded PLC: it answers each request as recorded, byte for byte, with the same delay.
 
 ::
 
     recorded    ask A   answer 1      ask B   nothing      ask B   answer 2
     replayed    A ──> answer 1, and again for ever         B ──> silence, then answer 2 for ever
 
-What came between a request and the next one is the answer to it: late answers to earlier requests, noise and
-echoes too, as the same client will ask the same again. Each request has its own row of answers, whoever asks,
-through whatever listener. A request that was never recorded gets no answer, and is counted.
+The bytes received between a request and the next one are its answer: also late answers to earlier requests,
+noise and echoes, because the same client will send the same requests again. Each request has its own sequence
+of answers, for all clients and listeners together. A request that was not recorded gets no answer, and is
+counted.
 
-Only a loopback is no question of its own: a client that sends one with fresh content means the same as
-before. So the loopbacks to a station are one sequence, and in what was heard the old content gives way to the
-new; when the sequence is used up, a station that answered any goes on to answer them.
+Loopbacks differ, because clients send each one with new data. So the loopbacks to a station are one sequence,
+and in the recorded answers the old data is replaced by the new; after the sequence, a station that answered
+any goes on answering them.
 
-Nothing here depends on the protocol: a ``Slave`` cuts the requests, and says how a loopback is answered.
+Nothing here depends on the protocol: a ``Slave`` splits the requests, and answers loopbacks.
 """
 
 from __future__ import annotations
@@ -34,15 +35,15 @@ if TYPE_CHECKING:
     from fatektool.simulator.slaves.base import Slave
 
 _MOST_NAMES = 1000
-"""How many different unknown requests are remembered; all are counted."""
+"""The most different unknown requests that are remembered; all are counted."""
 
 
 class Recorded(NamedTuple):
-    """One piece of a recorded conversation.
+    """One record of a trace.
 
     Attributes:
-        time_s: when, in seconds since any moment.
-        sent: True for what the client sent, False for what it received.
+        time_s: the time in seconds, from any start.
+        sent: True if the client sent it, False if it received it.
         data: the bytes.
     """
 
@@ -53,7 +54,7 @@ class Recorded(NamedTuple):
 
 @dataclass(slots=True)
 class _Exchange:
-    """A request, when it was asked, and what came before the next: seconds after it, bytes."""
+    """A request, its time, and the input before the next one: seconds after it, bytes."""
 
     request: RequestFrame
     time_s: float
@@ -61,21 +62,21 @@ class _Exchange:
 
 
 class Replay:
-    """A recording at work, for a ``Server``: one walk through the answers, shared by all lines.
+    """A recording for a ``Server``: one sequence of answers, shared by all lines.
 
     Args:
         records: the recording, in order.
         protocol: a name of ``SLAVES``.
         speed: 1 for the recorded delays, 10 for a tenth of them, 0 for none.
-        on_unknown: is called with each request that was not recorded.
+        on_unknown: gets each request that was not recorded.
 
     Raises:
-        DataError: there is no request in it.
+        DataError: it has no request.
         UsageError: a speed below 0.
 
     Attributes:
-        unknown: how often each request came that was not recorded.
-        unknown_count: how many those were in all.
+        unknown: the requests that were not recorded, with their count.
+        unknown_count: the total of these counts.
     """
 
     powered = True
@@ -89,20 +90,20 @@ class Replay:
         on_unknown: Callable[[RequestFrame], None] = lambda _: None,
     ) -> None:
         if not speed >= 0:  # refuses NaN too
-            raise UsageError(f"a replay's speed is 0 or more, not {speed}")
+            raise UsageError(f"replay speed: expected 0 or more, got {speed}")
         make_slave = SLAVES[protocol].make
         exchanges = _exchanges(records, make_slave)
         if not exchanges:
             raise DataError(
                 f"no {protocol} request in the recording",
-                hint="if another protocol was recorded, name it with --protocol",
+                hint="use --protocol with the recorded protocol",
             )
         self.unknown: dict[RequestFrame, int] = {}
         self.unknown_count = 0
         self._make_slave = make_slave
         self._pace = 1 / speed if speed else 0.0
         self._on_unknown = on_unknown
-        # Of these PLCs nothing is asked but how they would answer a loopback.
+        # These PLCs are used only for answers to loopbacks.
         stations = {exchange.request.station for exchange in exchanges} - {BROADCAST}
         self._plcs = build_plcs(sorted(stations), ladder_words=1) if stations else {}
         self._echoes = make_slave(self._plcs)
@@ -116,11 +117,11 @@ class Replay:
 
     def line(self, *, whole_answers: bool = False) -> ReplayLine:
         """A new line to the recorded PLCs."""
-        del whole_answers  # a recorded answer is always given in the pieces in which it was recorded
+        del whole_answers  # a recorded answer is always sent in the recorded pieces
         return ReplayLine(self, self._make_slave(self._plcs))
 
     def answer(self, request: RequestFrame) -> list[tuple[float, bytes]]:
-        """What comes back: seconds after the request, bytes. Nothing for a silence."""
+        """The answer: seconds after the request, bytes; empty for none."""
         answers = self._left.get(_question(request))
         if answers is None:
             self._count_unknown(request)
@@ -128,7 +129,7 @@ class Replay:
         exchange = answers.pop() if len(answers) > 1 else answers[0]
         heard = exchange.heard
         if exchange.request.raw != request.raw:
-            # What a two-wire line echoes is the request itself, which need not be what answers it.
+            # The echo of a two-wire line is the request, which may differ from the answer.
             swaps = {exchange.request.raw: request.raw, self._echo(exchange.request): self._echo(request)}
             for old, new in swaps.items():
                 if old:  # no PLC answers a broadcast
@@ -136,13 +137,13 @@ class Replay:
         return [(delay_s * self._pace, data) for delay_s, data in heard]
 
     def _prepare_loopbacks(self, answers: list[_Exchange]) -> None:
-        """Make contents exchangeable, and see to it that a loopback behind the last one is answered too."""
+        """Make the data replaceable, and answer loopbacks after the last recorded one."""
         good = None
         for exchange in answers:
             echo = self._echo(exchange.request)
             heard = b"".join(data for _, data in exchange.heard)
             if echo and echo in heard:
-                if not any(echo in data for _, data in exchange.heard):  # it came in pieces
+                if not any(echo in data for _, data in exchange.heard):  # received in pieces
                     exchange.heard = [(exchange.heard[-1][0], heard)]
                 delay_s = next(delay_s for delay_s, data in exchange.heard if echo in data)
                 good = _Exchange(exchange.request, exchange.time_s, [(delay_s, echo)])
@@ -165,7 +166,7 @@ class ReplayLine:
 
     Args:
         replay: the answers.
-        slave: cuts the requests; used by this line alone.
+        slave: splits the bytes into requests; used only by this line.
     """
 
     def __init__(self, replay: Replay, slave: Slave) -> None:
@@ -173,10 +174,10 @@ class ReplayLine:
         self._slave = slave
 
     def receive(self, data: bytes, now: float) -> list[tuple[float, bytes]]:
-        """Take bytes of requests; give what comes back, as (due time, bytes), times never decreasing.
+        """Receive bytes of requests; returns the answers as (due time, bytes), times never decreasing.
 
-        Requests that come at once are answered one after the other. One that comes while an answer is still
-        due does not wait for it: its client has given that answer up, as it did when this was recorded.
+        Requests that are received together are answered one after the other. A request that is received while
+        an answer is still due does not wait: its client has given up that answer, as in the recording.
         """
         due: list[tuple[float, bytes]] = []
         for request in self._slave.cut(data):
@@ -185,7 +186,7 @@ class ReplayLine:
         return due
 
     def datagram(self, data: bytes, now: float) -> list[tuple[float, bytes]]:
-        """Like ``receive`` for a medium in which every message is complete."""
+        """Like ``receive``, for a medium in which every message is complete."""
         self._slave.reset()
         due = self.receive(data, now)
         self._slave.reset()
@@ -193,17 +194,17 @@ class ReplayLine:
 
 
 def _question(request: RequestFrame) -> object:
-    """What makes two requests the same one."""
+    """The key by which requests are equal."""
     return (request.station, request.kind) if request.kind is RequestKind.LOOPBACK else request.raw
 
 
 def _exchanges(
     records: Iterable[Recorded], make_slave: Callable[[Mapping[int, SimulatedPlc]], Slave]
 ) -> list[_Exchange]:
-    """The requests in a recording, each with what it heard.
+    """The requests in a recording, each with its answer.
 
-    A request may be in several records, and several in one. What came before the first is left out: it
-    answers nothing.
+    A request may be in several records, and a record may have several requests. Input before the first
+    request is ignored: it answers nothing.
     """
     slave = make_slave({})
     groups: list[list[_Exchange]] = []
@@ -214,7 +215,7 @@ def _exchanges(
                 groups.append(asked)
         elif groups:
             last = groups[-1][-1]
-            latest = last.heard[-1][0] if last.heard else 0.0  # clocks have been known to be set back
+            latest = last.heard[-1][0] if last.heard else 0.0  # clocks may be set back
             last.heard.append((max(latest, record.time_s - last.time_s), record.data))
     for group in groups:
         if len(group) > 1:
@@ -223,10 +224,10 @@ def _exchanges(
 
 
 def _share_out(group: list[_Exchange], slave: Slave) -> None:
-    """Give each of several requests that were sent at once its own answer.
+    """Assign the answers to several requests that were sent together.
 
-    They are known by station and command, where the protocol's answers can be cut as its requests are; what
-    cannot be told apart stays with the last request.
+    They are assigned by station and command, if the protocol's answers have the same form as its requests;
+    the rest stays with the last request.
     """
     last = group[-1]
     if not last.heard:

@@ -1,6 +1,6 @@
-"""The memory of simulated PLCs in a file, so that it outlives the process.
+"""The memory of simulated PLCs in a file, kept after the process ends.
 
-A JSON document; what is zero, off, enabled or an empty page (all FF) is left out::
+A JSON document; values that are zero, off or enabled, and empty pages (all FF), are omitted::
 
     {"schema": "fatektool.simulator/1",
      "plcs": [{"station": 1, "model": "fbe-28mc", "ladder_words": 13184,
@@ -12,10 +12,9 @@ A JSON document; what is zero, off, enabled or an empty page (all FF) is left ou
                "page_count": 512,                       if it is not the model's
                "pages": {"0": "4642 .."}}]}             256 hex digits each
 
-A file is taken as a whole or refused with one line that names it and the fault. It is written beside
-its place and renamed into it, so that a process killed at any moment leaves either the state before or
-after. It is not synced to the disk: it is a PLC's memory in a test, nobody's only backup, and a
-restore writes it some two hundred times.
+A file is read completely, or refused with one line with its name and the fault. It is written under another
+name and renamed, so a process that is killed at any moment leaves the state before or after. It is not synced
+to the disk: it is a PLC's memory in a test, not a backup, and a restore writes it some two hundred times.
 """
 
 from __future__ import annotations
@@ -37,7 +36,7 @@ if TYPE_CHECKING:
     from fatektool.simulator.models import Model
 
 SCHEMA = "fatektool.simulator/1"
-_MAX_FILE = 64 << 20  # some hundred kilobytes a PLC, of which there are 254 at most
+_MAX_FILE = 64 << 20  # some hundred kilobytes for each PLC, at most 254 PLCs
 _EMPTY_PAGE = b"\xff" * PAGE_BYTES
 _PAGE = re.compile(f"[0-9A-Fa-f]{{{2 * PAGE_BYTES}}}")
 _PLC_KEYS = ("station", "model", "ladder_words", "flags", "on", "disabled", "inputs", "registers", "pages")
@@ -50,12 +49,12 @@ def dump_state(plcs: Iterable[SimulatedPlc]) -> str:
 
 
 def parse_state(text: str | bytes, name: str) -> list[SimulatedPlc]:
-    """The PLCs of a document; ``name`` is what an error calls it."""
+    """The PLCs of a document; ``name`` is for errors."""
     return _Reader(name).plcs(text)
 
 
 class StateFile:
-    """The file in which a simulator keeps its PLCs.
+    """The file with the PLCs of a simulator.
 
     Args:
         path: the file; it need not exist.
@@ -81,11 +80,11 @@ class StateFile:
         return plcs
 
     def save_if_changed(self, plcs: Mapping[int, SimulatedPlc]) -> bool:
-        """Write the file unless it holds this very state; True if it was written."""
+        """Write the file unless it has exactly this state; True if it was written."""
         revision = tuple([plc.revision for plc in plcs.values()])
         if revision == self._saved_revision:
             return False
-        # A link to the file stays a link; the temporary file is in the folder of what it points to.
+        # A link to the file is kept; the temporary file is in the folder of its target.
         target = self.path.resolve()
         temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
         try:
@@ -103,7 +102,7 @@ class StateFile:
 
 
 def _private(path: str, flags: int) -> int:
-    """A program may be in it: for its owner and the group, as a backup is."""
+    """It may contain a program: only owner and group can read it, as a backup."""
     return os.open(path, flags, 0o640)
 
 
@@ -138,7 +137,7 @@ def _addresses(tables: Mapping[str, bytearray]) -> dict[str, list[int]]:
 
 
 def _once_each(items: list[tuple[str, Any]]) -> dict[str, Any]:
-    """An object; one in which a key is there twice says two things."""
+    """An object; a key that occurs twice is refused."""
     found = dict(items)
     if len(found) != len(items):
         raise ValueError
@@ -146,7 +145,7 @@ def _once_each(items: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 class _Reader:
-    """Checks a document part by part; every complaint names the file."""
+    """Checks a document part by part; every error has the name of the file."""
 
     def __init__(self, name: str) -> None:
         self._name = name
@@ -155,9 +154,9 @@ class _Reader:
         try:
             document = json.loads(text, object_pairs_hook=_once_each)
         except (ValueError, RecursionError):
-            self._fail("is no JSON document")
+            self._fail("is not a JSON document")
         if not isinstance(document, dict) or document.get("schema") != SCHEMA:
-            self._fail(f"is no simulator state: its schema is not {SCHEMA}")
+            self._fail(f"is not a simulator state: expected the schema {SCHEMA}")
         self._keys(document, ("schema", "plcs"), "the document")
         if not isinstance(document["plcs"], list) or not document["plcs"]:
             self._fail("plcs is not a list of at least one PLC")
@@ -165,7 +164,7 @@ class _Reader:
         for part in document["plcs"]:
             plc = self._plc(part)
             if plc.station in plcs:
-                self._fail(f"station {plc.station} is there twice")
+                self._fail(f"station {plc.station} occurs twice")
             plcs[plc.station] = plc
         return list(plcs.values())
 
@@ -176,7 +175,7 @@ class _Reader:
         station = self._number(part["station"], range(1, MAX_STATION + 1), "station")
         model = MODELS.get(part["model"]) if isinstance(part["model"], str) else None
         if model is None:
-            self._fail(f"station {station}: no model {part['model']!r:.60}")
+            self._fail(f"station {station}: unknown model {part['model']!r:.60}")
         model = self._sized(model, part)
         pages = [_EMPTY_PAGE] * model.page_count
         for number, text in self._table(part["pages"], len(pages), f"station {station}: pages"):
@@ -215,9 +214,9 @@ class _Reader:
             self._fail(f"{what}: not an object")
         entries = []
         for key, value in part.items():
-            # The plainest spelling alone, so that one address cannot be there twice.
+            # Only the usual form, so that one address cannot occur twice.
             if not (key.isascii() and key.isdigit() and len(key) <= len(str(size)) and str(int(key)) == key):
-                self._fail(f"{what}: {key!r:.60} is no address")
+                self._fail(f"{what}: {key!r:.60} is not an address")
             entries.append((self._number(int(key), range(size), what), value))
         return entries
 
@@ -229,11 +228,11 @@ class _Reader:
 
     def _page(self, text: Any, number: int) -> bytes:
         if not isinstance(text, str) or not _PAGE.fullmatch(text):
-            self._fail(f"page {number} is not of {2 * PAGE_BYTES} hex digits")
+            self._fail(f"page {number}: expected {2 * PAGE_BYTES} hex digits")
         return bytes.fromhex(text)
 
     def _number(self, value: Any, allowed: range, what: str) -> int:
-        # True is an int to Python, and no number in a document.
+        # True is an int in Python, but not a number in a document.
         if not isinstance(value, int) or isinstance(value, bool) or value not in allowed:
             self._fail(f"{what}: expected {allowed.start} to {allowed.stop - 1}, got {value!r:.60}")
         return value
@@ -241,7 +240,7 @@ class _Reader:
     def _keys(self, part: Mapping[str, Any], expected: tuple[str, ...], what: str) -> None:
         if part.keys() != set(expected):
             found = ", ".join(f"{key!r:.40}" for key in list(part)[: len(expected) + 1]) or "none"
-            self._fail(f"{what} has the keys {found}, expected {', '.join(expected)}")
+            self._fail(f"{what}: expected the keys {', '.join(expected)}, got {found}")
 
     def _fail(self, fault: str) -> NoReturn:
         raise DataError(f"{self._name}: {fault}", file=self._name)

@@ -188,7 +188,7 @@ def test_parse() -> None:
         ("smoke=1", "drop, flip, truncate"),
         ("=1", "KIND=P"),
         ("drop=", "0 to 1"),
-        ("drop=often", "0 to 1, not 'often'"),
+        ("drop=often", "0 to 1, got 'often'"),
         ("drop=1.1", "0 to 1"),
         ("drop=-0.1", "0 to 1"),
         ("drop=nan", "0 to 1"),

@@ -144,5 +144,5 @@ def test_bit_errors_repeat_and_leave_the_others_where_they_were() -> None:
 @pytest.mark.parametrize("kind", ["wrong-line", "twins", "bit-errors"])
 @pytest.mark.parametrize("value", ["", "often", "1.5", "-1", "nan"])
 def test_what_is_no_probability(kind: str, value: str) -> None:
-    with pytest.raises(UsageError, match=f"fault {kind}: a probability is a number from 0 to 1, not"):
+    with pytest.raises(UsageError, match=f"fault {kind}: expected a probability from 0 to 1, got"):
         parse_faults([f"{kind}={value}"])

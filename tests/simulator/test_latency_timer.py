@@ -99,5 +99,5 @@ def test_on_a_pty(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("timer_ms", [-1.0, float("nan"), float("inf")])
 def test_what_is_no_timer(timer_ms: float) -> None:
-    with pytest.raises(UsageError, match="a latency timer is of 0 ms or more, not"):
+    with pytest.raises(UsageError, match="latency timer: expected 0 ms or more, got"):
         build_simulation(latency_timer_ms=timer_ms)

@@ -120,7 +120,7 @@ def test_a_babbling_client_fills_no_memory() -> None:
 
 @pytest.mark.parametrize("speed", [-1.0, float("nan")])
 def test_a_speed_that_is_none(speed: float) -> None:
-    with pytest.raises(UsageError, match="a replay's speed is 0 or more"):
+    with pytest.raises(UsageError, match="replay speed: expected 0 or more"):
         Replay([sent(0.0, STATUS)], speed=speed)
 
 

@@ -66,29 +66,29 @@ def test_the_file_is_sparse() -> None:
 DAMAGES: dict[str, Callable[[dict[str, Any]], object]] = {
     "flags is not a list": lambda plc: plc.update(flags="running"),
     "flags is not a list of running, battery_low": lambda plc: plc.update(flags=["tired"]),
-    "no model 'fx'": lambda plc: plc.update(model="fx"),
-    "no model 1": lambda plc: plc.update(model=1),
-    "no model []": lambda plc: plc.update(model=[]),
+    "unknown model 'fx'": lambda plc: plc.update(model="fx"),
+    "unknown model 1": lambda plc: plc.update(model=1),
+    "unknown model []": lambda plc: plc.update(model=[]),
     "station: expected 1 to 254, got 0": lambda plc: plc.update(station=0),
     "station: expected 1 to 254, got True": lambda plc: plc.update(station=True),
     "station: expected 1 to 254, got 1.0": lambda plc: plc.update(station=1.0),
     "ladder_words: expected 1 to 65535, got 65536": lambda plc: plc.update(ladder_words=65536),
     "pages: expected 0 to 2, got 3": lambda plc: plc["pages"].update({"3": "00" * 128}),
-    "pages: '01' is no address": lambda plc: plc["pages"].update({"01": "00" * 128}),
-    "pages: '99999999999' is no address": lambda plc: plc["pages"].update({"9" * 11: "00" * 128}),
+    "pages: '01' is not an address": lambda plc: plc["pages"].update({"01": "00" * 128}),
+    "pages: '99999999999' is not an address": lambda plc: plc["pages"].update({"9" * 11: "00" * 128}),
     "pages: not an object": lambda plc: plc.update(pages=[]),
-    "page 0 is not of 256 hex digits": lambda plc: plc["pages"].update({"0": "00" * 127}),
-    "page 1 is not of 256 hex digits": lambda plc: plc["pages"].update({"1": "0g" * 128}),
-    "page 2 is not of 256 hex digits": lambda plc: plc["pages"].update({"2": None}),
-    "a PLC has the keys": lambda plc: plc.update(more=1),
-    "a PLC has the keys 'station'": lambda plc: plc.pop("pages"),
+    "page 0: expected 256 hex digits": lambda plc: plc["pages"].update({"0": "00" * 127}),
+    "page 1: expected 256 hex digits": lambda plc: plc["pages"].update({"1": "0g" * 128}),
+    "page 2: expected 256 hex digits": lambda plc: plc["pages"].update({"2": None}),
+    "a PLC: expected the keys": lambda plc: plc.update(more=1),
+    "got 'station'": lambda plc: plc.pop("pages"),
     "on is not an object of X, Y": lambda plc: plc["on"].update(Q=[1]),
     "on: not a list of addresses": lambda plc: plc["on"].update(Y={}),
     "on: expected 0 to 255, got 256": lambda plc: plc["on"].update(Y=[256]),
     "disabled is not an object": lambda plc: plc.update(disabled=[]),
     "inputs: not a list": lambda plc: plc.update(inputs=None),
     "inputs: expected 0 to 255, got -1": lambda plc: plc.update(inputs=[-1]),
-    "registers: '-1' is no address": lambda plc: plc["registers"].update(R={"-1": 1}),
+    "registers: '-1' is not an address": lambda plc: plc["registers"].update(R={"-1": 1}),
     "registers: expected 0 to 8071, got 8072": lambda plc: plc["registers"].update(R={"8072": 1}),
     "a register: expected 0 to 65535, got 65536": lambda plc: plc["registers"].update(R={"1": 65536}),
 }
@@ -108,13 +108,13 @@ def test_damage_is_named(message: str) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (b"", "no JSON"),
-        (b"{", "no JSON"),
-        (b"\xff\xfe\xfd", "no JSON"),
-        (b"[" * 100000, "no JSON"),
+        (b"", "not a JSON document"),
+        (b"{", "not a JSON document"),
+        (b"\xff\xfe\xfd", "not a JSON document"),
+        (b"[" * 100000, "not a JSON document"),
         (b"[]", "schema"),
         (b'{"schema": "fatektool.backup/1"}', "schema"),
-        (b'{"schema": "fatektool.simulator/1"}', "has the keys 'schema'"),
+        (b'{"schema": "fatektool.simulator/1"}', "got 'schema'"),
         (b'{"schema": "fatektool.simulator/1", "plcs": []}', "at least one"),
         (b'{"schema": "fatektool.simulator/1", "plcs": {}}', "at least one"),
         (b'{"schema": "fatektool.simulator/1", "plcs": [1]}', "a PLC is not an object"),
@@ -126,7 +126,7 @@ def test_what_is_no_state(text: bytes, message: str) -> None:
 
 
 def test_a_station_is_there_once() -> None:
-    with pytest.raises(DataError, match="station 7 is there twice"):
+    with pytest.raises(DataError, match="station 7 occurs twice"):
         parse_state(dump_state([used_plc(), used_plc()]), "x")
 
 
@@ -184,9 +184,9 @@ def test_the_file_says_what_the_plc_is(tmp_path: Path) -> None:
     assert sorted(kept.plcs) == [3, 4]
     assert kept.plcs[3].model == MODELS["fb-40mc"]
     build_simulation((4, 3), "FB-40MC", state=path)
-    with pytest.raises(DataError, match="holds the stations 3, 4, not 1"):
+    with pytest.raises(DataError, match="expected the stations 1, got 3, 4"):
         build_simulation((1,), state=path)
-    with pytest.raises(DataError, match="station 3 is of model fb-40mc, not fbe-28mc"):
+    with pytest.raises(DataError, match="station 3: expected the model fbe-28mc, got fb-40mc"):
         build_simulation(model="fbe-28mc", state=path)
 
 
@@ -204,7 +204,7 @@ def test_build_plcs() -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"model": "s7-1200"}, "choose one of fb-20mc"),
+        ({"model": "s7-1200"}, "expected one of fb-20mc"),
         ({"stations": ()}, "at least one"),
         ({"stations": (0,)}, "1 to 254, not 0"),
         ({"stations": (255,)}, "1 to 254"),

@@ -1,1 +1,1 @@
-"""Where clients reach a simulated PLC: TCP, UDP, a pty."""
+"""The listeners of a simulated PLC: TCP, UDP, a pty."""

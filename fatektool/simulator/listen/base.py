@@ -1,4 +1,4 @@
-"""Lines, which know no medium, and listeners, which bring clients to them."""
+"""Interfaces of lines, without a medium, and of listeners, which connect clients to them."""
 
 from __future__ import annotations
 
@@ -6,35 +6,35 @@ from typing import Protocol
 
 
 class ServedLine(Protocol):
-    """What a client talks to: bytes and times in, bytes and times out."""
+    """One connection to PLCs: bytes and times in, bytes and times out."""
 
     def receive(self, data: bytes, now: float) -> list[tuple[float, bytes]]:
-        """Take bytes of a stream; give what comes back, as (due time, bytes), times never decreasing."""
+        """Receive bytes of a stream; returns the answers as (due time, bytes), times never decreasing."""
 
     def datagram(self, data: bytes, now: float) -> list[tuple[float, bytes]]:
-        """The same for a message that is complete."""
+        """The same for a complete message."""
 
 
 class Lines(Protocol):
-    """Where listeners get their lines from: a ``Simulation`` or a ``Replay``."""
+    """The source of lines for listeners: a ``Simulation`` or a ``Replay``."""
 
     @property
     def powered(self) -> bool:
-        """False while nothing answers and no connection is held."""
+        """False during a power cut: no answers, no connections."""
 
     def line(self, *, whole_answers: bool = False) -> ServedLine:
-        """A new line; ``whole_answers`` for a medium of datagrams."""
+        """A new line; ``whole_answers`` for a medium with datagrams."""
 
 
 class Listener(Protocol):
-    """One address at which clients reach a simulator."""
+    """One address of a simulator."""
 
     @property
     def address(self) -> str:
-        """In words: ``tcp://127.0.0.1:40123``, or the path of a link."""
+        """The address as text: ``tcp://127.0.0.1:40123``, or the path of a link."""
 
     def lose_power(self) -> None:
-        """Drop what a PLC without power would drop."""
+        """Drop connections and bytes, as a PLC without power."""
 
     def close(self) -> None:
-        """Give the address back; twice is fine."""
+        """Close it; may be called again."""

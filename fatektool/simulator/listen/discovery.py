@@ -1,7 +1,7 @@
-"""A listener that answers as an Ethernet module does that is looked for by UDP.
+"""A listener that answers the discovery requests for Ethernet modules by UDP.
 
-What an answer holds at which place is not known. So this one has the length and the two port numbers of a
-real one, and says in words that it is a simulator's.
+The layout of an answer is not known. So this answer has the length and the two port numbers of a real one,
+and a text that it is from a simulator.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _READ_BYTES = 2048
 
 
 class DiscoveryListener:
-    """A UDP socket that answers the two requests, to the port that is known for it.
+    """A UDP socket that answers the two requests, to the known port.
 
     Args:
         reactor: serves it.
@@ -52,10 +52,10 @@ class DiscoveryListener:
                 self._socket.sendto(ANSWER, (sender[0], self._answer_port, *sender[2:]))
 
     def lose_power(self) -> None:
-        """Nothing is held."""
+        """Nothing to drop."""
 
     def close(self) -> None:
-        """Close the socket; twice is fine."""
+        """Close the socket; may be called again."""
         if self._socket.fileno() >= 0:
             self._reactor.selector.unregister(self._socket)
             self._socket.close()

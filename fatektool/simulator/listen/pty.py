@@ -1,14 +1,14 @@
-"""A pseudo terminal as a listener: to its client it is a serial port. POSIX only.
+"""A pseudo terminal as a listener: a serial port for its client. POSIX only.
 
 ::
 
     client ── link ──> /dev/pts/7 (slave end) ═══ master end ── line ──> PLCs
 
-The listener keeps the slave end open itself, so that a client that closes the port hangs nothing up and
-the next one finds it as it was. When answers fill the terminal's buffer and nobody reads them, the next
-request drops them, as a serial port overruns: whoever asks again has given up what came before.
+The listener keeps the slave end open itself, so the terminal stays usable after a client closes the port. If
+answers fill the terminal's buffer and nobody reads them, the next request drops them, as a serial port
+overruns: a client that sends again has given up the earlier answers.
 
-The link is a symbolic link in a place that the user names; see ``pty_symlink``.
+The link is a symbolic link with a path given by the user; see ``pty_symlink``.
 """
 
 from __future__ import annotations
@@ -36,22 +36,22 @@ if TYPE_CHECKING:
 
 _READ_BYTES = 65536
 _OUTPUT_SPEED = 5
-"""The place of a terminal's speed among its attributes: the client's setting, seen from this end."""
+"""The index of the speed in a terminal's attributes: the setting of the client."""
 
 
 class PtyListener:
-    """A pseudo terminal behind a link.
+    """A pseudo terminal with a link to it.
 
     Args:
         reactor: watches it.
-        link: the path that clients open; it is made, and removed at the end.
+        link: the path that clients open; created here, and removed at the end.
         baud: the only speed that is understood, as on a real line; None for any.
     """
 
     def __init__(self, reactor: Reactor, link: str | os.PathLike[str], baud: int | None = None) -> None:
         if not PTY_SUPPORTED:
             raise LineError(
-                f"cannot open {os.fspath(link)}: there are no pseudo terminals here", hint="use TCP"
+                f"cannot open {os.fspath(link)}: this system has no pseudo terminals", hint="use TCP"
             )
         self._speed = None if baud is None else _speed(baud)
         self._reactor = reactor
@@ -85,7 +85,7 @@ class PtyListener:
                 if self._backlog:
                     self._drop_unread()
                 if self._speed not in {None, termios.tcgetattr(self._master)[_OUTPUT_SPEED]}:
-                    return  # at another speed there is nothing but framing errors
+                    return  # at another speed there are only framing errors
                 self._reactor.dispatch(self._line.receive(data, self._reactor.now()), self._deliver)
 
     def _deliver(self, data: bytes) -> None:
@@ -102,8 +102,8 @@ class PtyListener:
             self._reactor.selector.modify(self._master, events, self._on_ready)
 
     def _drop_unread(self) -> None:
-        # By reading, as flushing leaves what the kernel has not yet handed on to the terminal. A client
-        # may have set the terminal to give nothing instead of an error when there is no more.
+        # By reading, because flushing keeps what the kernel has not yet passed on to the terminal. A client
+        # may have set the terminal to return nothing instead of an error at the end.
         self._backlog.clear()
         with contextlib.suppress(BlockingIOError, InterruptedError):
             while os.read(self._slave, _READ_BYTES):
@@ -114,7 +114,7 @@ class PtyListener:
         self._backlog.clear()
 
     def close(self) -> None:
-        """Remove the link and close both ends; twice is fine."""
+        """Remove the link and close both ends; may be called again."""
         if self._closed:
             return
         self._closed = True
@@ -122,7 +122,7 @@ class PtyListener:
         self._close_ends()
 
     def _close_ends(self) -> None:
-        # The link first: while the terminal lives its number cannot be another's.
+        # The link first: while the terminal is open, its number cannot belong to another.
         self._link.remove()
         os.close(self._master)
         os.close(self._slave)
@@ -137,6 +137,6 @@ def _speed(baud: int) -> int:
     speed = getattr(termios, f"B{baud}", None)
     if speed is None:
         raise UsageError(
-            f"--strict-baud: this system has no {baud} bits a second for a terminal", hint="such as 9600"
+            f"--strict-baud: this system has no {baud} bits per second for a terminal", hint="such as 9600"
         )
     return int(speed)

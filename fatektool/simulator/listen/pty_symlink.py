@@ -1,13 +1,13 @@
-"""The link under which clients find a pseudo terminal, and whose it is.
+"""The symbolic link to a pseudo terminal, and its owner.
 
 ::
 
     plc        -> /dev/pts/7
-    .plc.lock     locked as long as the simulator lives that made the link
+    .plc.lock     locked as long as the simulator runs that created the link
 
-The system gives the number of a dead simulator's terminal to the next one that is opened, whoever
-opens it. So where a link points does not show whether its maker is alive; the lock does. A simulator that
-was killed leaves both files, and the next one takes them over. Anything else of that name is kept.
+The system gives the number of a dead simulator's terminal to the next one that is opened by any program. So
+the target of a link does not show whether its creator still runs; the lock does. A simulator that was killed
+leaves both files, and the next one replaces them. Any other file with that name is kept.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ _TERMINAL = re.compile(r"/dev/(pts/\d+|tty[a-z]*\d+)")
 
 
 class PtyLink:
-    """A claim to ``path``: first it is ours, then it points somewhere, then it is given back.
+    """The ownership of ``path``: locked first, then a link, then removed.
 
     Args:
-        path: the link that will be made. LineError if it cannot be had.
+        path: the link that will be created. LineError if it cannot be used.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
@@ -51,7 +51,7 @@ class PtyLink:
             fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:
             os.close(self._descriptor)
-            raise self._refused("another simulator serves it") from error
+            raise self._refused("another simulator uses it") from error
         try:
             self._remove_dead(made_by_us=made_by_us)
         except LineError:
@@ -59,7 +59,7 @@ class PtyLink:
             raise
 
     def point_to(self, terminal: str) -> None:
-        """Make the link."""
+        """Create the link."""
         try:
             self.path.symlink_to(terminal)
         except OSError as error:
@@ -67,7 +67,7 @@ class PtyLink:
         self._target = terminal
 
     def remove(self) -> None:
-        """Remove the link if it still is the one that was made, and give up the claim."""
+        """Remove the link, if it is still the one that was created, and unlock."""
         with contextlib.suppress(OSError):
             if self._target is not None and os.fspath(self.path.readlink()) == self._target:
                 self.path.unlink()
@@ -83,12 +83,12 @@ class PtyLink:
             raise self._refused("it exists")
 
     def _unlock(self) -> None:
-        # Unlinked before the lock is let go, so that nobody is found waiting for a file that is gone.
+        # Unlinked before it is unlocked, so that no process waits for a file that is deleted.
         with contextlib.suppress(OSError):
             self._lock.unlink()
         os.close(self._descriptor)
 
     def _refused(self, reason: str) -> LineError:
         return LineError(
-            f"cannot make the link {self.path}: {reason}", hint="remove it or choose another path"
+            f"cannot create the link {self.path}: {reason}", hint="remove it or choose another path"
         )

@@ -1,4 +1,4 @@
-"""One thread that serves many listeners and keeps the pace of their lines.
+"""One thread that serves many listeners, with the timing of their lines.
 
 ::
 
@@ -8,10 +8,10 @@
              │      └── due:   heap ──> the listener's deliver
              └── again, until stop()
 
-Selectors wait in whole milliseconds (epoll rounds up), which a page at 921600 baud, 3 ms of wire time,
-cannot bear. So the wait for a due piece is done by ``select`` on the selector's own descriptor, which
-takes microseconds, and its last stretch by asking without waiting. A late wake-up does not add up: due
-times come from the line's ideal timeline, not from when the piece before was sent.
+Selectors wait in whole milliseconds (epoll rounds up), which is too coarse for a page at 921600 baud, 3 ms of
+wire time. So the wait for a due piece uses ``select`` on the selector's own descriptor, which takes
+microseconds, and at the end polls without waiting. Late wake-ups do not add up: due times are ideal times,
+and do not depend on when the piece before was sent.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ if TYPE_CHECKING:
     from fatektool.simulator.listen.base import Lines, Listener
 
 _SPIN_S = 0.00012
-"""How long before a due time the thread stops sleeping: a system's wake-up may be that late."""
+"""Seconds before a due time at which the thread stops sleeping: a wake-up may be that late."""
 
 
 class Reactor:
     """Waits for the bytes of all listeners, and delivers each piece of an answer when it is due.
 
     Args:
-        lines: gives each listener its lines.
+        lines: the source of lines for the listeners.
     """
 
     def __init__(self, lines: Lines) -> None:
@@ -57,9 +57,9 @@ class Reactor:
         self._wait_s = _precise_wait(self.selector)
 
     def serve_until(self, stop: Callable[[], bool] = bool) -> None:
-        """Serve until ``stop()`` was called, or the predicate given here says so.
+        """Serve until ``stop()`` is called, or the predicate returns True.
 
-        The predicate is asked after every wake-up only; ``stop`` wakes the thread.
+        The predicate is called only after a wake-up; ``stop`` wakes the thread.
         """
         due = self._due
         while not self._stopping and not stop():
@@ -77,7 +77,7 @@ class Reactor:
             self._wake_up.send(b"\0")
 
     def close(self) -> None:
-        """Close all listeners; twice is fine."""
+        """Close all listeners; may be called again."""
         if self._closed:
             return
         self._closed = True
@@ -91,9 +91,9 @@ class Reactor:
     def dispatch(
         self, due: list[tuple[float, bytes]], deliver: Callable[[bytes], None], *, join: bool = True
     ) -> int:
-        """Have every piece delivered when it is due; the number of deliveries.
+        """Deliver every piece when it is due; returns the number of deliveries.
 
-        What is due at the same time is delivered as one, if ``join``: for a stream.
+        With ``join``, pieces due at the same time are delivered as one: for a stream.
         """
         if not self.lines.powered:
             self._lose_power()
@@ -126,7 +126,7 @@ class Reactor:
 
 
 def _precise_wait(selector: selectors.BaseSelector) -> Callable[[float], object]:
-    """A wait for bytes or a time, to the microsecond if the system can."""
+    """A wait for bytes or a time, with microseconds if the system has them."""
     # epoll and kqueue are descriptors themselves, readable when one that they watch is.
     fileno = getattr(selector, "fileno", None)
     if fileno is None:

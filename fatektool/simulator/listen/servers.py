@@ -1,4 +1,4 @@
-"""A simulator at work: its listeners, opened by what a user names, and the thread that serves them."""
+"""The server of a simulator: its listeners, and the thread that serves them."""
 
 from __future__ import annotations
 
@@ -20,28 +20,28 @@ if TYPE_CHECKING:
 
 
 class Server(Reactor):
-    """Listeners of one simulation or replay. Open them, then serve; one thread does all."""
+    """Listeners of one simulation or replay. Open them, then serve; one thread serves all."""
 
     def open_tcp(self, host: str = "127.0.0.1", port: int = 0) -> Listener:
-        """Listen on TCP; port 0 takes a free one. LineError if it cannot be had."""
+        """Listen on TCP; port 0 for any free one. LineError if it cannot be used."""
         return self._opened(TcpListener(self, host, port))
 
     def open_udp(self, host: str = "127.0.0.1", port: int = 0) -> Listener:
-        """Listen on UDP; port 0 takes a free one. LineError if it cannot be had."""
+        """Listen on UDP; port 0 for any free one. LineError if it cannot be used."""
         return self._opened(UdpListener(self, host, port))
 
     def open_discovery(
         self, host: str = "127.0.0.1", port: int = 0, answer_port: int = ANSWER_PORT
     ) -> Listener:
-        """Answer who looks for Ethernet modules by UDP. LineError if the address cannot be had."""
+        """Answer discovery requests for Ethernet modules by UDP. LineError if the address cannot be used."""
         return self._opened(DiscoveryListener(self, host, port, answer_port))
 
     def open_pty(self, link: str | os.PathLike[str], baud: int | None = None) -> Listener:
-        """Make a pseudo terminal with ``link`` pointing to it. LineError if it cannot be had.
+        """Create a pseudo terminal with a link to it. LineError if that fails.
 
         Args:
             link: the path that clients open.
-            baud: the only speed at which clients are understood; None for any.
+            baud: the only speed that is understood; None for any.
         """
         return self._opened(PtyListener(self, link, baud))
 
@@ -52,7 +52,7 @@ class Server(Reactor):
 
 @contextlib.contextmanager
 def running(server: Server) -> Iterator[Server]:
-    """Serve in a thread of its own as long as the context lasts, then close the server."""
+    """Serve in a thread during the context, then close the server."""
     failures: list[BaseException] = []
 
     def serve() -> None:
@@ -60,7 +60,7 @@ def running(server: Server) -> Iterator[Server]:
             server.serve_until()
         except BaseException as error:  # noqa: BLE001 - raised again where the context ends
             failures.append(error)
-            server.close()  # clients see an end, not a silence
+            server.close()  # clients see the end of the connection, not a silence
 
     thread = threading.Thread(target=serve, name="fatektool simulator", daemon=True)
     thread.start()

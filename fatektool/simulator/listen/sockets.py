@@ -1,4 +1,4 @@
-"""The sockets of the listeners: bound to an address, or an error that says why not."""
+"""The sockets of the listeners, bound to an address."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ _MAX_PORT = 0xFFFF
 
 
 def bound(kind: socket.SocketKind, scheme: str, host: str, port: int) -> socket.socket:
-    """A socket at this address; LineError if it cannot be had."""
+    """A socket at this address; LineError if it cannot be used."""
     shown = f"{scheme}://{f'[{host}]' if ':' in host else host}:{port}"
-    if not 0 <= port <= _MAX_PORT:  # getaddrinfo would take it modulo 65536
-        raise LineError(f"cannot listen on {shown}: a port is 0 to {_MAX_PORT}", address=shown)
+    if not 0 <= port <= _MAX_PORT:  # getaddrinfo would use it modulo 65536
+        raise LineError(f"cannot listen on {shown}: expected a port from 0 to {_MAX_PORT}", address=shown)
     try:
         family, _, _, _, address = socket.getaddrinfo(host, port, type=kind, flags=socket.AI_PASSIVE)[0]
         opened = socket.socket(family, kind)
@@ -43,6 +43,6 @@ def _cannot_listen(shown: str, error: Exception) -> LineError:
 
 
 def address_of(scheme: str, opened: socket.socket) -> str:
-    """Where a socket listens, in words."""
+    """The address of a socket, as text."""
     host, port = opened.getsockname()[:2]
     return f"{scheme}://[{host}]:{port}" if ":" in host else f"{scheme}://{host}:{port}"

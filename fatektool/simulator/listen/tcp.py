@@ -16,10 +16,10 @@ if TYPE_CHECKING:
     from fatektool.simulator.listen.reactor import Reactor
 
 _MAX_BACKLOG = 1 << 18
-"""Answers in bytes that a client may leave unread before its requests are left unread too."""
+"""Bytes of answers that a client may leave unread before its requests are not read any more."""
 
 _MAX_PENDING = 1 << 14
-"""Pieces that may wait for their time before requests are left unread."""
+"""Pieces that may wait for their time before requests are not read any more."""
 
 
 class TcpListener:
@@ -34,7 +34,7 @@ class TcpListener:
         reactor.selector.register(self._socket, selectors.EVENT_READ, self._on_ready)
 
     def _on_ready(self, _events: int) -> None:
-        # One connection an event: the selector says so again if more are waiting.
+        # One connection for each event: the selector reports again if more are waiting.
         try:
             client, _ = self._socket.accept()
         except OSError:
@@ -47,7 +47,7 @@ class TcpListener:
         self.connections.add(TcpConnection(self._reactor, self, client))
 
     def lose_power(self) -> None:
-        """Close every connection; the listener stays, to refuse new ones."""
+        """Close every connection; the listener stays open, to refuse new ones."""
         for connection in tuple(self.connections):
             connection.close()
 
@@ -60,7 +60,7 @@ class TcpListener:
 
 
 class TcpConnection:
-    """One client over TCP, with a framing buffer and a timeline of its own."""
+    """One client over TCP, with its own framing buffer and timing."""
 
     def __init__(self, reactor: Reactor, listener: TcpListener, client: socket.socket) -> None:
         self._reactor = reactor
@@ -91,7 +91,7 @@ class TcpConnection:
                 if self._pending > _MAX_PENDING:
                     self._settle()
                 return
-            # The client has closed its half: what it asked for before still comes.
+            # The client has closed its half: the answers to its requests are still sent.
             self._ended = True
         self._settle()
 
@@ -118,7 +118,7 @@ class TcpConnection:
             self._settle()
 
     def _settle(self) -> None:
-        """Close a connection that is done; else watch for what it still needs."""
+        """Close a connection that is done; else wait for what it still needs."""
         if self._socket.fileno() < 0:
             return
         if self._ended and not self._pending and not self._backlog:
@@ -142,7 +142,7 @@ class TcpConnection:
         self._events = events
 
     def close(self) -> None:
-        """Close the connection; twice is fine."""
+        """Close the connection; may be called again."""
         if self._socket.fileno() >= 0:
             if self._events:
                 self._reactor.selector.unregister(self._socket)

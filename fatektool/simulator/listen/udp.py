@@ -1,4 +1,4 @@
-"""A UDP listener: a line for each sender. When the power is cut, it is silent."""
+"""A UDP listener: a line for each sender. During a power cut it does not answer."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ _MAX_SENDERS = 64
 
 
 class UdpListener:
-    """A UDP socket. A request is one datagram, an answer is one, whatever the baud rate."""
+    """A UDP socket. A request is one datagram, and so is an answer, with any baud rate."""
 
     def __init__(self, reactor: Reactor, host: str, port: int) -> None:
         self._reactor = reactor
         self._socket = bound(socket.SOCK_DGRAM, "udp", host, port)
         self.address = address_of("udp", self._socket)
-        # A line keeps the pace and the late answers of one sender; the oldest senders are forgotten.
+        # A line has the timing and the late answers of one sender; the oldest senders are dropped.
         self._lines: OrderedDict[object, ServedLine] = OrderedDict()
         reactor.selector.register(self._socket, selectors.EVENT_READ, self._on_ready)
 
     def _on_ready(self, _events: int) -> None:
-        # Windows reports here that an earlier answer found nobody; that is no fault of this one.
+        # Windows reports here that an earlier answer was not received; this does not concern the request.
         with contextlib.suppress(OSError):
             data, sender = self._socket.recvfrom(READ_BYTES)
             due = self._line(sender).datagram(data, self._reactor.now())
@@ -48,11 +48,11 @@ class UdpListener:
                 self._socket.sendto(data, sender)
 
     def lose_power(self) -> None:
-        """Forget the senders."""
+        """Drop the senders."""
         self._lines.clear()
 
     def close(self) -> None:
-        """Close the socket; twice is fine."""
+        """Close the socket; may be called again."""
         if self._socket.fileno() >= 0:
             self._reactor.selector.unregister(self._socket)
             self._socket.close()

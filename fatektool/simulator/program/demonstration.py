@@ -1,4 +1,4 @@
-"""The demonstration program of a model, in the form that its family keeps programs in."""
+"""The demonstration program of a model, in the form of its family."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ def program_of(model: Model, *, seed: int = 1, swapped: bool = False) -> list[by
     """Pages of 128 bytes, as many as the model has.
 
     Args:
-        model: what the PLC is.
+        model: of the PLC.
         seed: which program.
-        swapped: exchange the bytes of each word of an FBs image.
+        swapped: swap the bytes of each word of an FBs image.
     """
     if model.image is not None and model.has_fbs_image:
         return fbs_program(model.image, model.page_count, seed=seed, swapped=swapped)

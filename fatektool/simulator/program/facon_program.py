@@ -1,15 +1,15 @@
-"""A demonstration program: pages that look like a ladder program and are the same for the same seed.
+"""A demonstration program: pages like those of a ladder program, the same for the same seed.
 
 ::
 
     page 0   46 42 33 30 hi lo FF .. FF    'F' 'B' two digits, ladder size in words, rest FF
     page 1   code ...
     ...      code ...                      about three quarters of the ladder is used
-    page N   FF .. FF                      what no instruction fills is FF; N = words / 64, rounded up
+    page N   FF .. FF                      unused memory is FF; N = words / 64, rounded up
 
-The content is no FATEK instruction code, which no public paper describes. It has what matters to a
-tool: no two pages alike, zero and FF bytes inside, a tail of empty pages, and a last page that the
-ladder may fill in part only (FACON paper, section 4.2, command 4F).
+The content is not FATEK instruction code, which no public paper describes. It has what is needed for tests:
+no two equal pages, 00 and FF bytes inside, empty pages at the end, and a last page that may belong only
+partly to the ladder (FACON paper, section 4.2, command 4F).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Ladder code as an FBs has it, in words of 16 bits: made at random, the same for the same seed.
+"""Random ladder code of an FBs, in words of 16 bits, the same for the same seed.
 
 ::
 
@@ -9,8 +9,8 @@
               ORG .. T30 preset .. FO 0 OUT          a timer and its output
 
 One-word instructions have an operation and four bits of the address in their low byte, the other eight in the
-high byte; functions have their code in the high byte, and operands behind. No paper describes this code: it
-was read from programs of the vendor's, and only what is certain there is used here (docs/programs.md).
+high byte; functions have their code in the high byte, and operands after it. No paper describes this code: it
+was found in example programs of the vendor, and only what is certain is used here (docs/programs.md).
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ FO_0 = 0xFC6F
 MOV, INCREMENT, SET, RESET, TIMER = 0xAC, 0x96, 0x82, 0xC4, 0x80
 _X, _Y, _S, _M = 0x000, 0x100, 0x428, 0x810
 _CONSTANT, _PLAIN, _MOVE_CONSTANT, _MOVE = 0xFD, 0xFC, 0xF5, 0xF4
-"""Low bytes of functions: bit 0 says that the first operand is a constant."""
+"""Low bytes of functions: bit 0 means that the first operand is a constant."""
 _TIMERS = range(30, 50)
 
 
 def one_word(operation: int, bit: int) -> int:
-    """An instruction on the bit at this address, 0 to FFF: X0 is 000, Y0 100, S0 428, M0 810."""
+    """An instruction with the bit at this address, 0 to FFF: X0 is 000, Y0 100, S0 428, M0 810."""
     return (bit & 0xFF) << 8 | operation << 4 | bit >> 8
 
 
 def operand(value: int) -> int:
-    """A register's byte address or a constant, as it follows a function: its bytes exchanged."""
+    """A register's byte address or a constant after a function: with its bytes swapped."""
     return (value & 0xFF) << 8 | value >> 8
 
 
@@ -53,7 +53,7 @@ def function(code: int, low: int, *operands: int) -> list[int]:
 
 
 def random_code(random: Random, words: int) -> list[int]:
-    """Networks of ``words`` words in all."""
+    """Networks of ``words`` words in total."""
     code: list[int] = []
     while len(code) < words:
         network = _network(random)

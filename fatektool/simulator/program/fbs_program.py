@@ -1,4 +1,4 @@
-"""The program image of an FBs, as its project files have it: a header of four pages, code, labels, ROR.
+"""The program image of an FBs, as in project files: a header of four pages, code, labels, ROR.
 
 ::
 
@@ -8,8 +8,8 @@
     byte A7FE    labels, downwards; none here
     byte A800    ROR registers
 
-A word has its low byte first; ``swapped`` exchanges them, as it is not known in which order the pages come
-over the line. How much of it a real unit gives out by 4F is not known either.
+A word has its low byte first; ``swapped`` swaps the bytes, because their order on the line is not known. How
+much of the image a real unit returns with 4F is not known either.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ _ROR_WORDS = 12
 
 @dataclass(frozen=True, slots=True)
 class FbsImage:
-    """How a model keeps its program.
+    """The program image of a model.
 
     Args:
-        digits: behind ``FBS4`` in the header.
-        capacity: words of code that it has space for.
-        pages: how many it gives out; those behind are refused.
+        digits: after ``FBS4`` in the header.
+        capacity: space for code, in words.
+        pages: the number of pages that can be read; further pages are refused.
     """
 
     digits: str
@@ -48,11 +48,11 @@ def fbs_program(
     """The pages of a program.
 
     Args:
-        image: the model's.
-        pages: how many.
+        image: of the model.
+        pages: their number.
         seed: varies the code.
         code: words of the main units, instead of random ones.
-        swapped: exchange the two bytes of each word.
+        swapped: swap the two bytes of each word.
     """
     random = Random(f"fbs {seed} {image.capacity}")  # noqa: S311 - a repeatable pattern is wanted
     capacity = min(image.capacity, pages * PAGE_WORDS - CODE)

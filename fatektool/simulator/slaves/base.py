@@ -1,8 +1,8 @@
-"""The seam between a line and a protocol: what any slave over simulated PLCs must offer.
+"""The interface between a line and a protocol: the slave.
 
-A line (see ``line``) carries bytes, paces them and spoils them; it knows no protocol. A slave cuts
-requests out of the bytes and answers them from its PLCs. To add a protocol, write one class with
-these methods over ``SimulatedPlc``'s operations, with a ``SlaveType`` for ``protocols.py``.
+A line (see ``line``) passes on bytes, with timing and faults, for any protocol. A slave splits the bytes into
+requests and answers them from its PLCs. To add a protocol, write one class with these methods, based on the
+operations of ``SimulatedPlc``, with a ``SlaveType`` for ``protocols.py``.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ BROADCAST = 0
 
 
 class RequestKind(Enum):
-    """What a request does, as far as the fault layer and a replay must know."""
+    """What a request does, for faults and replay."""
 
     OTHER = "other"
     LOOPBACK = "loopback"
@@ -28,14 +28,14 @@ class RequestKind(Enum):
 
 
 class RequestFrame(NamedTuple):
-    """One request cut out of the stream, its checksum already right.
+    """One request from the stream, with a correct checksum.
 
     Attributes:
-        end: how many bytes of the chunk just fed had crossed the wire with its last one.
+        end: its end in the bytes just received.
         raw: the frame.
         station: 0 broadcast, 1 to 254.
-        command: the command as it is in the frame.
-        data: what follows the command, without checksum.
+        command: the command in the frame.
+        data: the bytes after the command, without checksum.
         kind: what it does.
     """
 
@@ -48,9 +48,9 @@ class RequestFrame(NamedTuple):
 
 
 def addressed(plcs: Mapping[int, SimulatedPlc], station: int) -> SimulatedPlc | None:
-    """Who answers under this number: the PLC that has it, else one whose station check is off (R4149).
+    """The PLC that answers this station: the one with this number, else one without station check (R4149).
 
-    A line of the simulator is port 0. Where the low byte of R4149 is 1, that port answers every number.
+    A line of the simulator is port 0. If the low byte of R4149 is 1, that port answers every number.
     """
     found = plcs.get(station)
     if found is not None or station == BROADCAST:
@@ -62,11 +62,11 @@ class SlaveType(NamedTuple):
     """One protocol of the simulator.
 
     Attributes:
-        make: a new slave for a line, over the PLCs that all lines share.
-        model: a name of ``MODELS``: what the PLCs are, unless one is named.
-        bits_per_char: of its lines, unless a format is named: 10 for 7E1, 11 for 8E1.
-        make_without_error_character: the same with answers to 4F and 53 as the figures of the FACON paper
-            show them; None for a protocol whose papers agree.
+        make: a new slave for a line, with the PLCs of all lines.
+        model: the default model, a name of ``MODELS``.
+        bits_per_char: the default of its lines: 10 for 7E1, 11 for 8E1.
+        make_without_error_character: the same with answers to 4F and 53 as in the figures of the FACON paper;
+            None for other protocols.
     """
 
     make: Callable[[Mapping[int, SimulatedPlc]], Slave]
@@ -76,7 +76,7 @@ class SlaveType(NamedTuple):
 
 
 class Slave(Protocol):
-    """One connection's view of the PLCs: a framing buffer of its own over shared PLCs."""
+    """The protocol of one connection: its own framing buffer, with shared PLCs."""
 
     @property
     def plcs(self) -> Mapping[int, SimulatedPlc]:
@@ -84,16 +84,16 @@ class Slave(Protocol):
 
     @property
     def delimiters(self) -> tuple[bytes, ...]:
-        """What begins and ends an answer, the end last: what noise must hold to be taken for one."""
+        """The bytes that begin and end an answer, the end last; noise contains some of them."""
 
     def cut(self, data: bytes) -> list[RequestFrame]:
-        """Take bytes, whatever the chunking; give the requests that they complete."""
+        """Receive bytes, in any pieces; returns the requests that they complete."""
 
     def answer(self, request: RequestFrame) -> bytes | None:
-        """Execute a request; None where a PLC is silent."""
+        """Execute a request; None if no PLC answers."""
 
     def readdressed(self, answer: bytes, station: int) -> bytes:
-        """The same answer as another station would send it, its checksum right."""
+        """The same answer from another station, with a correct checksum."""
 
     def reset(self) -> None:
-        """Forget an unfinished request."""
+        """Drop an incomplete request."""

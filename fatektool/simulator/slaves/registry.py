@@ -1,4 +1,4 @@
-"""The protocols of a simulator, by name; each is loaded when it is asked for."""
+"""The protocols of a simulator, by name; each is loaded when needed."""
 
 from __future__ import annotations
 

@@ -161,7 +161,7 @@ REFUSALS = [
     (2, "--replay good.ndjson --no-program-commands", "--no-program-commands does not go with --replay: "),
     (2, "--replay good.ndjson --no-error-character", "--no-error-character does not go with --replay: "),
     (2, "--replay good.ndjson --replay-speed -1", "-1"),
-    (2, "--replay good.ndjson --replay-speed nan", "a replay's speed is 0 or more, not nan"),
+    (2, "--replay good.ndjson --replay-speed nan", "replay speed: expected 0 or more, got nan"),
     (2, "--replay-speed 2", "--replay-speed needs --replay TRACE"),
     (2, "--replay nowhere.ndjson", "cannot read nowhere.ndjson"),
     (5, "--replay empty.ndjson", "empty.ndjson: no facon request in the recording"),

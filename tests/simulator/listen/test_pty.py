@@ -147,7 +147,7 @@ def test_what_is_not_a_dead_simulators_link_is_kept(link: Path, tmp_path: Path) 
     with closing(Server(build_simulation())) as server, closing(Server(build_simulation())) as other:
         server.open_pty(link)
         target = link.readlink()
-        with pytest.raises(LineError, match="another simulator serves it"):
+        with pytest.raises(LineError, match="another simulator uses it"):
             other.open_pty(link)
         assert link.readlink() == target
         (tmp_path / "console").symlink_to(target)

@@ -257,7 +257,7 @@ def test_what_a_simulation_of_the_protocol_is() -> None:
     assert built.plcs[3].model.name == "m-series"
     assert sent(built.line(), request("4601'F'0000", station=3)) == reply("46000000", station=3)
     assert build_simulation(model="fb-20mc", protocol="mseries").plcs[1].model.name == "fb-20mc"
-    with pytest.raises(UsageError, match="no protocol 'modbus': choose one of facon, mseries"):
+    with pytest.raises(UsageError, match="protocol 'modbus': expected one of facon, mseries"):
         build_simulation(protocol="modbus")
 
 

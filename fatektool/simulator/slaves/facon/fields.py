@@ -1,4 +1,4 @@
-"""How FACON writes the fields of a request's data, in characters.
+"""The notation of fields in FACON requests: characters.
 
 ::
 
@@ -32,7 +32,7 @@ _CHARACTER_OF_STATE = bytes.maketrans(b"\x00\x01", b"01")
 
 
 def require_hex(text: bytes) -> None:
-    """Refuses what is not all upper-case hex digits."""
+    """Refuse anything except upper-case hex digits."""
     if text.translate(None, _HEX_DIGITS):
         raise Refusal(RefusalCode.ILLEGAL_VALUE)
 
@@ -55,13 +55,13 @@ class FaconFields(Fields):
         return int(digit) if digit.isdigit() else None
 
     def take_content(self, count: int) -> bytes:
-        """Two hex digits a byte."""
+        """Two hex digits for each byte."""
         text = self.take(2 * count)
         require_hex(text)
         return bytes.fromhex(text.decode("ascii"))
 
     def element(self, *widths: int) -> tuple[SymbolKind, int]:
-        """All letters are the symbol: DX is no D, though D is one."""
+        """All letters are the symbol: DX is not D, although D is a symbol."""
         letters = _LETTERS.match(self._data, self._position)
         end = letters.end() if letters else self._position
         found = _BY_SYMBOL.get(self._data[self._position : end])
@@ -77,16 +77,16 @@ class FaconFields(Fields):
         return kind, int(address)
 
     def states(self, count: int) -> bytes:
-        """A character each."""
+        """One character each."""
         text = self.take(count)
         if text.translate(None, b"01"):
             raise Refusal(RefusalCode.ILLEGAL_VALUE)
         return text.translate(_STATE_OF_CHARACTER)
 
     def written(self, content: bytes) -> bytes:
-        """Two hex digits a byte."""
+        """Two hex digits for each byte."""
         return to_hex(content)
 
     def written_states(self, states: bytes) -> bytes:
-        """A character each."""
+        """One character each."""
         return states.translate(_CHARACTER_OF_STATE)

@@ -1,4 +1,4 @@
-"""FACON frames, from the slave's end: found in a stream of bytes, checked, and built.
+"""FACON frames of the slave: found in a stream of bytes, checked, and built.
 
 ::
 
@@ -6,8 +6,7 @@
     02   2 hex    2        0..500 char  2 hex   03
 
 LRC is the sum of all bytes from STX to the last of the data, modulo 256 (FACON paper, section 2).
-Hex digits are upper case; other ones make a frame that no PLC takes for its own, and it stays silent,
-as it does for a wrong LRC.
+Hex digits are upper case. A frame with other ones is not answered, like a frame with a wrong LRC.
 """
 
 from __future__ import annotations
@@ -19,17 +18,17 @@ MAX_FRAME = MIN_FRAME + 500
 
 HEX2 = [f"{value:02X}".encode("ascii") for value in range(256)]
 BYTE_OF = {text: value for value, text in enumerate(HEX2)}
-"""Two upper-case hex digits to their value: stricter than int(), which takes ``+1`` and ``1_``."""
+"""Two upper-case hex digits to their value: stricter than int(), which accepts ``+1`` and ``1_``."""
 
 _STX = b"\x02"
 _ETX = b"\x03"
 
 
 class FaconCutter:
-    """Cuts STX..ETX out of bytes in any chunking, with a buffer of at most one frame.
+    """Finds STX..ETX in bytes, in any pieces, with a buffer of at most one frame.
 
-    STX starts a frame afresh wherever it comes, so that noise before it costs nothing. What is longer
-    than a frame can be is dropped to the next STX.
+    STX always begins a new frame, so noise before it has no effect. Bytes longer than a frame are dropped up
+    to the next STX.
     """
 
     def __init__(self) -> None:
@@ -51,12 +50,12 @@ class FaconCutter:
         return frames
 
     def reset(self) -> None:
-        """Forget a frame that has only begun."""
+        """Drop an incomplete frame."""
         self._begun = b""
 
 
 def station_of(frame: bytes) -> int | None:
-    """The station that a frame is for; None if its station or LRC does not hold."""
+    """The station of a frame; None if its station or LRC is wrong."""
     if BYTE_OF.get(frame[-3:-1]) != sum(frame[:-3]) & 0xFF:
         return None
     return BYTE_OF.get(frame[1:3])

@@ -1,4 +1,4 @@
-"""The FACON ASCII protocol over simulated PLCs.
+"""The FACON ASCII protocol for simulated PLCs.
 
 ::
 
@@ -10,7 +10,7 @@
     50    page, 256 hex
 
 All other commands: ``slaves.fatek.commands``. An unknown command, of whatever two characters, is answered
-with error 4 under its own characters. No answer, too, if station or LRC are no hex digits (FACON paper,
+with error 4 and its own characters. There is no answer if station or LRC are not hex digits (FACON paper,
 sections 2 to 4).
 """
 
@@ -53,12 +53,12 @@ def _write_page(plc: SimulatedPlc, fields: Fields) -> bytes:
 
 
 class FaconSlave(FatekSlave):
-    """One line's FACON slave.
+    """The FACON slave of one line.
 
     Args:
         plcs: the PLCs on the line by station.
-        error_character: False leaves the error character out of good answers to 4F and 53, as the
-            paper's figures draw them; its worked example has it.
+        error_character: False for answers to 4F and 53 without the error character, as in the paper's
+            figures; its example has it.
     """
 
     delimiters = (b"\x02", b"\x03")
@@ -72,7 +72,7 @@ class FaconSlave(FatekSlave):
         self._good_if_any = b"0" if error_character else b""
 
     def cut(self, data: bytes) -> list[RequestFrame]:
-        """Take bytes, whatever the chunking; give the requests that they complete."""
+        """Receive bytes, in any pieces; returns the requests that they complete."""
         requests = []
         for end, frame in self._cutter.feed(data):
             station = facon_frame.station_of(frame)
@@ -83,19 +83,19 @@ class FaconSlave(FatekSlave):
         return requests
 
     def readdressed(self, answer: bytes, station: int) -> bytes:
-        """The same answer as another station would send it, its LRC right."""
+        """The same answer from another station, with a correct LRC."""
         return facon_frame.readdressed(answer, station)
 
     def reset(self) -> None:
-        """Forget an unfinished request."""
+        """Drop an incomplete request."""
         self._cutter.reset()
 
     def addressed(self, station: int) -> SimulatedPlc | None:
-        """The PLC that has this number, else one whose station check is off."""
+        """The PLC with this number, else one whose station check is off."""
         return addressed(self.plcs, station)
 
     def code_of(self, request: RequestFrame) -> int | None:
-        """Of two hex digits; None if there is something else."""
+        """From two hex digits; None if they are not."""
         return facon_frame.BYTE_OF.get(request.command)
 
     def framed(self, request: RequestFrame, data: bytes) -> bytes:
@@ -107,7 +107,7 @@ class FaconSlave(FatekSlave):
         return b"%X" % code
 
     def execute(self, plc: SimulatedPlc, request: RequestFrame) -> bytes:
-        """Let a PLC do what is asked; its answer. Those to 4F and 53 may lack the error character."""
+        """Execute a request in a PLC; its answer. Those to 4F and 53 may have no error character."""
         command = request.command
         if command not in {_READ_PAGE, _DETAILED_STATUS}:
             return super().execute(plc, request)

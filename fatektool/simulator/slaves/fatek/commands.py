@@ -1,4 +1,4 @@
-"""What a simulated PLC does on each command that FACON and the M-series both have: one function a command.
+"""The commands of FACON and the M-series: one function for each.
 
 ::
 
@@ -42,7 +42,7 @@ MAX_LOOPBACK = 256
 LOOPBACK = 0x4E
 
 Serve = Callable[[SimulatedPlc, Fields], bytes]
-"""Executes a command and gives what its answer has after the error."""
+"""Executes a command; returns the data of its answer after the error."""
 
 KINDS = {
     0x42: RequestKind.WRITE,
@@ -163,4 +163,4 @@ COMMANDS: dict[int, Serve] = {
     0x49: _write_mixed,
     0x53: _detailed_status,
 }
-"""All but 40, whose bytes differ, and 4E, whose answer has no error."""
+"""All except 40, whose bytes differ, and 4E, whose answer has no error."""

@@ -1,11 +1,11 @@
-"""Reads the fields of a request's data one after the other, and refuses them as a PLC does.
+"""Parses the fields of a request's data one after the other, and refuses them as a PLC does.
 
-FACON and the M-series have the same fields in the same order; how each is written, their own ``fields`` says.
+FACON and the M-series have the same fields in the same order; the notation is in the ``fields`` of each.
 
-Which error a bad field is (FACON paper, section 3, and M-series paper, section 2.3, give the words):
+The error of a bad field (FACON paper, section 3; M-series paper, section 2.3):
 
-* **4, illegal format**: too few or too many bytes, an unknown symbol, a register where a discrete is due or
-  the other way round.
+* **4, illegal format**: too few or too many bytes, an unknown symbol, a register instead of a discrete or
+  the reverse.
 * **2, illegal value**: an n, a control code or a discrete's state out of its range.
 * **A, illegal address**: every element of the right form that this PLC does not have.
 """
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Fields(ABC):
-    """A cursor over the data of one request, and the way to write an answer's."""
+    """A cursor over the data of one request, and the notation of an answer."""
 
     def __init__(self, data: bytes) -> None:
         self._data = data
@@ -37,7 +37,7 @@ class Fields(ABC):
         return self._data[start:end]
 
     def end(self) -> None:
-        """Refuses anything that is left."""
+        """Refuse further data."""
         if self._position != len(self._data):
             raise Refusal(RefusalCode.ILLEGAL_FORMAT)
 
@@ -71,11 +71,11 @@ class Fields(ABC):
 
     @abstractmethod
     def take_number(self) -> int | None:
-        """The number that an n is, 0 to 255; None for what is none."""
+        """The number in an n, 0 to 255; None if invalid."""
 
     @abstractmethod
     def take_digit(self) -> int | None:
-        """The number that a control code is; None for what is none."""
+        """The number in a control code; None if invalid."""
 
     @abstractmethod
     def take_content(self, count: int) -> bytes:

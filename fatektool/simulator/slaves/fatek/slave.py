@@ -1,7 +1,7 @@
-"""A slave of FACON or the M-series over simulated PLCs; frames and notation are the protocol's own.
+"""A slave of FACON or the M-series for simulated PLCs; frames and notation depend on the protocol.
 
-Silent: a wrong checksum, a station that is not here. A broadcast (station 00) is executed by every PLC and
-answered by none, refused or not. An unknown command is answered with error 4.
+No answer: to a wrong checksum or an unknown station. A broadcast (station 00) is executed by every PLC, and
+none answers. An unknown command is answered with error 4.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ if TYPE_CHECKING:
 
 
 class FatekSlave(ABC):
-    """One line's slave.
+    """The slave of one line.
 
     Args:
         plcs: the PLCs on the line by station.
 
     Attributes:
-        commands: what is done on each command.
-        fields: reads a request's data.
-        good: the error of a good answer.
+        commands: the function of each command.
+        fields: parses a request's data.
+        good: the error of a valid answer.
     """
 
     commands: ClassVar[Mapping[int, Serve]]
@@ -43,7 +43,7 @@ class FatekSlave(ABC):
 
     @abstractmethod
     def code_of(self, request: RequestFrame) -> int | None:
-        """The command's code; None for what no code is written as."""
+        """The command's code; None if it is not a code."""
 
     @abstractmethod
     def framed(self, request: RequestFrame, data: bytes) -> bytes:
@@ -54,11 +54,11 @@ class FatekSlave(ABC):
         """An error code as an answer's data."""
 
     def addressed(self, station: int) -> SimulatedPlc | None:
-        """Who answers under this number."""
+        """The PLC that answers this station."""
         return self.plcs.get(station)
 
     def answer(self, request: RequestFrame) -> bytes | None:
-        """Execute a request; None for a broadcast and for stations that are not here."""
+        """Execute a request; None for a broadcast and for unknown stations."""
         if request.station == BROADCAST:
             for plc in self.plcs.values():
                 self.execute(plc, request)
@@ -67,7 +67,7 @@ class FatekSlave(ABC):
         return None if here is None else self.execute(here, request)
 
     def execute(self, plc: SimulatedPlc, request: RequestFrame) -> bytes:
-        """Let a PLC do what is asked; its answer."""
+        """Execute a request in a PLC; its answer."""
         code = self.code_of(request)
         try:
             if code == LOOPBACK:

@@ -1,8 +1,8 @@
-"""Modbus ASCII from the slave's end.
+"""Modbus ASCII of the slave.
 
 ::
 
-    ':'  station  function  data ...  LRC  CR LF        two hex digits a byte
+    ':'  station  function  data ...  LRC  CR LF        two hex digits each byte
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class AsciiFraming:
         return self.sealed(bytes((station,)) + content[1:], b"")
 
     def reset(self) -> None:
-        """Forget what has begun."""
+        """Drop an incomplete request."""
         self._begun = b""
 
 

@@ -1,6 +1,6 @@
-"""What a Modbus slave needs of a framing, from the slave's end: requests found in a stream, answers framed.
+"""The interface of a Modbus slave's framing: requests from a stream, frames of answers.
 
-What is around an answer is its request's: over TCP its transaction too.
+The header of an answer is that of its request: over TCP with its transaction.
 """
 
 from __future__ import annotations
@@ -19,24 +19,24 @@ class CutRequest(NamedTuple):
 
 
 class SlaveFraming(Protocol):
-    """One way to put a body, which is station, function and data, on a wire."""
+    """One framing of a body: station, function and data."""
 
     @property
     def delimiters(self) -> tuple[bytes, ...]:
-        """What begins and ends a frame."""
+        """The bytes that begin and end a frame."""
 
     @property
     def own_units(self) -> frozenset[int]:
         """The stations that mean the PLC at the address itself."""
 
     def feed(self, data: bytes) -> list[CutRequest]:
-        """Requests that ``data`` completes, their checksums right."""
+        """Requests that ``data`` completes, with correct checksums."""
 
     def sealed(self, body: bytes, request: bytes) -> bytes:
         """The frame of an answer to a request."""
 
     def readdressed(self, frame: bytes, station: int) -> bytes:
-        """A frame with another station, its checksum right."""
+        """A frame with another station and a correct checksum."""
 
     def reset(self) -> None:
-        """Forget a request that has only begun."""
+        """Drop an incomplete request."""

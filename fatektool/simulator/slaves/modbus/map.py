@@ -1,4 +1,4 @@
-"""Which of a PLC's elements answer to which Modbus addresses, from the slave's end.
+"""The Modbus map of the slave: the elements of its addresses.
 
 ::
 
@@ -8,8 +8,8 @@
                              9000 RT0..RT255  9500 RC0..RC199  9700 C200..C255, two registers each
 
 Addresses are as on the wire: 0 is 000001 or 400001. While R3968 is A55AH, coils and registers are what
-R3969..R3971 and R3978..R3980 say (first address, first M or R, count) and nothing else. Discrete inputs (02)
-and input registers (04) are what R3972..R3974 and R3975..R3977 say, whatever R3968 is; with a count of 0
+R3969..R3971 and R3978..R3980 define (first address, first M or R, count), and nothing else. Discrete inputs
+(02) and input registers (04) are what R3972..R3974 and R3975..R3977 say, whatever R3968 is; with a count of 0
 there are none (FBs link paper, section 13.3).
 """
 
@@ -40,7 +40,7 @@ class MapSpan(NamedTuple):
 
 
 class Piece(NamedTuple):
-    """Elements of one symbol, one behind the other."""
+    """Consecutive elements of one symbol."""
 
     symbol: str
     first: int
@@ -68,7 +68,7 @@ _R_LAST, _R_MOST = 3839, 3840
 
 
 def pieces(plc: SimulatedPlc, function: int, address: int, count: int) -> list[Piece]:
-    """What the addresses of a function are; refuses what is not in the map as it is now."""
+    """The elements of a function's addresses; refuses addresses outside the present map."""
     spans = _spans(plc, function)
     return list(_cut(spans, address, count))
 

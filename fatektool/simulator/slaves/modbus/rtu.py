@@ -1,14 +1,14 @@
-"""Modbus RTU from the slave's end.
+"""Modbus RTU of the slave.
 
 ::
 
     station  function  data ...  CRC         2 bytes, low byte first
 
-A request ends with a silence, which pipes and sockets do not carry. So its length is taken from its
-function: 8 bytes for 01 to 06, 9 and as many as the seventh byte says for 15 and 16. A function that is not
-known ends where the CRC over all of it comes out as 0, within 32 bytes. A request that has begun holds back
-what comes behind it only as long as all of its beginning could be one; so noise costs nothing, and a request
-that was cut off is given up when what came behind it shows that its CRC is wrong.
+A request ends with a silence, which pipes and sockets do not transmit. So its length is found from its
+function: 8 bytes for 01 to 06, and 9 plus the value of the seventh byte for 15 and 16. A request with an
+unknown function ends where the CRC of all its bytes is 0, within 32 bytes. An incomplete request delays the
+bytes after it only as long as its beginning may be a request; so noise has no effect, and an incomplete
+request is dropped when the bytes after it show that its CRC is wrong.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from fatektool.simulator.slaves.modbus.slave import slave_type
 MAX_RTU = 256
 _FIXED = frozenset(range(1, 7))
 _SEVERAL = {15: (1968, 8, 1), 16: (123, 1, 2)}
-"""Most of them, how many go into a unit, bytes of a unit."""
+"""The most of them, how many are in a unit, bytes of a unit."""
 
 _LONGEST_UNKNOWN = 32
 
@@ -53,7 +53,7 @@ class RtuFraming:
                 raw = stream[at : at + size]
                 found.append(CutRequest(at + size - carried, raw, raw[:-2]))
                 at = start = at + size
-            elif size == 0:  # it could be one yet
+            elif size == 0:  # it may still be one
                 break
             else:
                 at += 1
@@ -70,12 +70,12 @@ class RtuFraming:
         return self.sealed(bytes((station,)) + frame[1:-2], b"")
 
     def reset(self) -> None:
-        """Forget what has begun."""
+        """Drop an incomplete request."""
         self._begun = b""
 
 
 def _rtu_size(begun: bytes) -> int:
-    """How long the request is that begins here; 0 if more bytes are needed to know; below 0 if it is none."""
+    """The length of the request that begins here; 0 if not known yet; below 0 if it is not a request."""
     if begun[0] > MAX_STATION:
         return -1
     if len(begun) < 2:

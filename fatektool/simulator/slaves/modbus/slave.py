@@ -1,4 +1,4 @@
-"""Modbus over simulated PLCs: one function of Modbus a function here.
+"""Modbus for simulated PLCs: one function here for each function of Modbus.
 
 ::
 
@@ -10,14 +10,13 @@
     16     address count n, n bytes          address count
     else                                     function + 80, exception
 
-Exceptions: 01 a function that is not here, 02 an address that is not in the map, 03 a value or count that
-cannot be. They are looked for in this order of what can be wrong: function, form and count (03), addresses
-(02); and nothing is written unless all of it is right. Which address is which element says ``modbus_map``, as
-R3968 is at that moment.
+Exceptions: 01 an unknown function, 02 an address outside the map, 03 an invalid value or count. They are
+checked in this order: function, form and count (03), addresses (02); nothing is written unless the whole
+request is valid. ``map`` has the elements of the addresses, by R3968 at that moment.
 
-Silent: a wrong checksum, a station that is not here. A broadcast (station 0) is executed by every PLC, and
-answered by none. Over TCP there is none: units 0 and 255 are the PLC at the address itself, the first one,
-which executes and answers. Many clients send nothing else than 0. R4047 chooses the protocol of a real PLC's
+No answer: to a wrong checksum or an unknown station. A broadcast (station 0) is executed by every PLC, and
+none answers. Over TCP there is no broadcast: units 0 and 255 are the PLC at the address itself, the first
+one, which executes and answers. Many clients always send 0. In a real PLC, R4047 sets the protocol of its
 ports; here it is the command line.
 """
 
@@ -44,11 +43,11 @@ _EXCEPTIONS = {RefusalCode.ILLEGAL_ADDRESS: ILLEGAL_ADDRESS, RefusalCode.ILLEGAL
 
 
 class ModbusSlave:
-    """One line's Modbus slave.
+    """The Modbus slave of one line.
 
     Args:
         plcs: the PLCs on the line by station.
-        framing: RTU, ASCII or TCP, used by this line alone.
+        framing: RTU, ASCII or TCP, used only by this line.
     """
 
     def __init__(self, plcs: Mapping[int, SimulatedPlc], framing: SlaveFraming) -> None:
@@ -57,11 +56,11 @@ class ModbusSlave:
 
     @property
     def delimiters(self) -> tuple[bytes, ...]:
-        """What begins and ends an answer."""
+        """The bytes that begin and end an answer."""
         return self._framing.delimiters
 
     def cut(self, data: bytes) -> list[RequestFrame]:
-        """Take bytes, whatever the chunking; give the requests that they complete."""
+        """Receive bytes, in any pieces; returns the requests that they complete."""
         own = self._framing.own_units
         return [
             RequestFrame(
@@ -76,7 +75,7 @@ class ModbusSlave:
         ]
 
     def answer(self, request: RequestFrame) -> bytes | None:
-        """Execute a request; None for a broadcast and for stations that are not here."""
+        """Execute a request; None for a broadcast and for unknown stations."""
         if request.station == BROADCAST:
             for plc in self.plcs.values():
                 _execute(plc, request)
@@ -87,11 +86,11 @@ class ModbusSlave:
         return self._framing.sealed(bytes((request.station,)) + _execute(here, request), request.raw)
 
     def readdressed(self, answer: bytes, station: int) -> bytes:
-        """The same answer as another station would send it, its checksum right."""
+        """The same answer from another station, with a correct checksum."""
         return self._framing.readdressed(answer, station)
 
     def reset(self) -> None:
-        """Forget an unfinished request."""
+        """Drop an incomplete request."""
         self._framing.reset()
 
 

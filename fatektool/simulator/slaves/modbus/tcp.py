@@ -1,4 +1,4 @@
-"""Modbus TCP from the slave's end.
+"""Modbus TCP of the slave.
 
 ::
 
@@ -15,7 +15,7 @@ _TCP_HEAD = 7
 
 
 class TcpFraming:
-    """TCP. What is no header is skipped byte by byte, up to one."""
+    """TCP. Bytes that are not a header are skipped, up to a header."""
 
     delimiters = (b"\x00\x01\x00\x00\x00", b"\x00")
     own_units = frozenset({0, 255})
@@ -43,7 +43,7 @@ class TcpFraming:
         return found
 
     def sealed(self, body: bytes, request: bytes) -> bytes:
-        """The request's transaction, length, the station as it was asked, and what else is in the body."""
+        """The request's transaction, length, station, and the rest of the body."""
         return request[:2] + b"\0\0" + len(body).to_bytes(2, "big") + request[6:7] + body[1:]
 
     def readdressed(self, frame: bytes, station: int) -> bytes:
@@ -51,7 +51,7 @@ class TcpFraming:
         return frame[:6] + bytes((station,)) + frame[7:]
 
     def reset(self) -> None:
-        """Forget what has begun."""
+        """Drop an incomplete request."""
         self._begun = b""
 
 

@@ -1,4 +1,4 @@
-"""How the M-series writes the fields of a request's data, in bytes.
+"""The notation of fields in M-series requests: bytes.
 
 ::
 
@@ -7,8 +7,8 @@
              44 57 4D 00 00     DWM0
     value    1, 2 or 4 bytes by the element's width, high byte first; a discrete is 00 or 01
 
-A symbol has no length of its own: 44 may be D or the start of DD, DF, DR, DRT or DWX. The longest symbol that
-is there is the one. No address below 4300H begins with a byte that would make a symbol longer (M-series
+A symbol has no length field: 44 may be D or the beginning of DD, DF, DR, DRT or DWX. The longest symbol that
+matches is used. No address below 4300H begins with a byte that would make a symbol longer (M-series
 paper, section 2.4).
 """
 
@@ -34,11 +34,11 @@ class MSeriesFields(Fields):
         return self.take(1)[0]
 
     def take_content(self, count: int) -> bytes:
-        """As it is."""
+        """The same bytes."""
         return self.take(count)
 
     def element(self, *widths: int) -> tuple[SymbolKind, int]:
-        """The longest symbol that is there, and two bytes."""
+        """The longest symbol that matches, and two bytes."""
         start = self._position
         for length in _SYMBOL_LENGTHS:
             kind = _BY_SYMBOL.get(self._data[start : start + length])
@@ -52,16 +52,16 @@ class MSeriesFields(Fields):
         return kind, int.from_bytes(self.take(2), "big")
 
     def states(self, count: int) -> bytes:
-        """A byte each."""
+        """One byte each."""
         states = self.take(count)
         if states.translate(None, b"\x00\x01"):
             raise Refusal(RefusalCode.ILLEGAL_VALUE)
         return states
 
     def written(self, content: bytes) -> bytes:
-        """As it is."""
+        """The same bytes."""
         return content
 
     def written_states(self, states: bytes) -> bytes:
-        """A byte each."""
+        """One byte each."""
         return states

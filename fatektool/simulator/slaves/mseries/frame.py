@@ -1,4 +1,4 @@
-"""M-series frames, from the slave's end: found in a stream of bytes, checked, and built.
+"""M-series frames of the slave: found in a stream of bytes, checked, and built.
 
 ::
 
@@ -6,14 +6,14 @@
             2 bytes  └────── length bytes ─────┘  2 bytes
     52 10   in an answer
 
-The length has its high byte first. The CRC is CRC-16/MODBUS over length and payload; the paper computes it,
-swaps its bytes and sends the high one first, so that the low byte comes first on the wire (M-series paper,
-section 1). A payload may hold 55 AA, and 51 10 too: the length alone says where a frame ends.
+The length has its high byte first. The CRC is CRC-16/MODBUS over length and payload; in the paper its bytes
+are swapped and the high one is sent first, so the low byte is first on the wire (M-series paper, section 1).
+A payload may contain 55 AA, and also 51 10: only the length gives the end of a frame.
 
-So noise that looks like a header could hold back the requests behind it until as many bytes have come as its
-length says. It does not when station, command or length show that no command of the paper has begun there:
-then what follows it is looked at in the meantime. A request that was cut off does hold back, as the one
-behind it could as well be its data; its CRC shows it in the end, and none behind it is lost.
+So noise that looks like a header could delay the requests after it until as many bytes are received as its
+length requires. It does not if its station, command or length are not those of a command in the paper: then
+the bytes after it are examined meanwhile. An incomplete request does cause a delay, because the request after
+it could be its data; in the end its CRC shows the error, and no request after it is lost.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ TERMINATOR = b"\x55\xaa"
 OVERHEAD = 8
 MIN_PAYLOAD = 2
 MAX_PAYLOAD = 512
-"""About twice the longest request of the paper (45 with 256 states, 262 bytes): more is a lying length."""
+"""About twice the longest request of the paper (45 with 256 states, 262 bytes): more is a wrong length."""
 
 MAX_FRAME = OVERHEAD + MAX_PAYLOAD
 
@@ -46,22 +46,22 @@ _PAYLOADS = {
     0x4E: range(2, 259),
     0x53: range(2, 3),
 }
-"""How long the payload of each command's request can be, by its limits (M-series paper, section 2.2)."""
+"""The possible lengths of each command's payload, by its limits (M-series paper, section 2.2)."""
 
 
 class MSeriesCutter:
-    """Cuts requests out of bytes in any chunking, with a buffer of less than one longest frame."""
+    """Splits bytes, in any pieces, into requests, with a buffer of less than one longest frame."""
 
     def __init__(self) -> None:
         self._begun = b""
 
     def feed(self, data: bytes) -> list[tuple[int, bytes]]:
-        """Frames that ``data`` completes, their CRC right, each with its end as an offset in ``data``."""
+        """Frames that ``data`` completes, with correct CRCs, each with its end as an offset in ``data``."""
         frames: list[tuple[int, bytes]] = []
         carried = len(self._begun)
         stream = self._begun + data
-        unfinished = None  # where the first frame is that more bytes may complete
-        known = 0  # a frame behind a false one is known when the false one is
+        unfinished = None  # the place of the first frame that more bytes may complete
+        known = 0  # a frame after a false one is known when the false one is
         at = stream.find(REQUEST)
         while at >= 0:
             following = at + 1
@@ -88,7 +88,7 @@ class MSeriesCutter:
         return frames
 
     def reset(self) -> None:
-        """Forget a frame that has only begun."""
+        """Drop an incomplete frame."""
         self._begun = b""
 
 
@@ -101,13 +101,13 @@ def crc16(data: bytes) -> int:
 
 
 def sealed(header: bytes, payload: bytes) -> bytes:
-    """The frame of ``payload`` behind ``header``, ``REQUEST`` or ``ANSWER``."""
+    """The frame of ``payload`` with ``header``, ``REQUEST`` or ``ANSWER``."""
     covered = len(payload).to_bytes(2, "big") + payload
     return header + covered + crc16(covered).to_bytes(2, "little") + TERMINATOR
 
 
 def payload_of(frame: bytes) -> bytes:
-    """What is between the length and the CRC."""
+    """The bytes between length and CRC."""
     return frame[_HEAD:-4]
 
 
@@ -121,7 +121,7 @@ def _holds(frame: bytes) -> bool:
 
 
 def _likely(begun: bytes, length: int) -> bool:
-    """Whether a request of this length may begin with station and command, as far as they are here."""
+    """Whether a request of this length may begin with these bytes of station and command."""
     if begun[:1] > _LAST_STATION:
         return False
     return len(begun) < 2 or length in _PAYLOADS.get(begun[1], ())

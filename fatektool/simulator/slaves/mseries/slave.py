@@ -1,13 +1,13 @@
-"""The M-series binary protocol over simulated PLCs.
+"""The M-series binary protocol for simulated PLCs.
 
 ::
 
     51 10  00 02  01 40  A1 84  55 AA       52 10  00 06  01 40 00 01 00 00  77 D5  55 AA
                   └─ station          ──────────>               └─ error
 
-Its commands: ``slaves.fatek.commands``. The paper lists 53 without its answer; here it is the one of FACON.
-Of the brief status only the first byte says something. There is no command for the program, so that 4F and
-50 are answered as every unknown one is, with error 4 (M-series paper, section 2).
+Its commands: ``slaves.fatek.commands``. The paper lists 53 without its answer; here it is that of FACON. In
+the brief status only the first byte has a meaning. There is no command for the program, so 4F and 50 are
+answered like every unknown command, with error 4 (M-series paper, section 2).
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def _brief_status(plc: SimulatedPlc, fields: Fields) -> bytes:
 
 
 class MSeriesSlave(FatekSlave):
-    """One line's M-series slave.
+    """The M-series slave of one line.
 
     Args:
         plcs: the PLCs on the line by station.
@@ -49,7 +49,7 @@ class MSeriesSlave(FatekSlave):
         self._cutter = mseries_frame.MSeriesCutter()
 
     def cut(self, data: bytes) -> list[RequestFrame]:
-        """Take bytes, whatever the chunking; give the requests that they complete."""
+        """Receive bytes, in any pieces; returns the requests that they complete."""
         requests = []
         for end, frame in self._cutter.feed(data):
             payload = mseries_frame.payload_of(frame)
@@ -58,11 +58,11 @@ class MSeriesSlave(FatekSlave):
         return requests
 
     def readdressed(self, answer: bytes, station: int) -> bytes:
-        """The same answer as another station would send it, its CRC right."""
+        """The same answer from another station, with a correct CRC."""
         return mseries_frame.readdressed(answer, station)
 
     def reset(self) -> None:
-        """Forget an unfinished request."""
+        """Drop an incomplete request."""
         self._cutter.reset()
 
     def code_of(self, request: RequestFrame) -> int:
