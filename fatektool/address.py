@@ -125,7 +125,7 @@ class PlcAddress(Value):
             raise UsageError(
                 f"format: expected {data_bits} data bits, as {self.protocol} on a serial line needs, "
                 f"got {self.line_settings.format}",
-                hint=f"add --format {default_format(self.codec)} or {data_bits}N1, as the PLC's port is set",
+                hint=f"add --line {default_format(self.codec)} or {data_bits}N1, as the PLC's port is set",
             )
 
     @property

@@ -151,7 +151,7 @@ class _Report(Value):
         if answers:
             return "the PLC is slow, or the line loses frames: try a longer --timeout or more --retries"
         if instead:
-            return "check --baud, --format and --protocol, and the termination and shield of the line"
+            return "check --baud, --line and --protocol, and the termination and shield of the line"
         if over_network(state.transport):
             return f"check that the PLC is on, and --station. {AT_AN_ETHERNET_MODULE}"
         return "check that the PLC is on, the cable, station, baud and format (factory: station 1, 9600 7E1)"

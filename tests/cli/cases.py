@@ -55,8 +55,8 @@ ANSWERS = """\
 """
 
 ERRORS = r"""
-2 status -p PLC --nope
-    No such option:? '?--nope'?; see 'fatektool status --help'
+2 status -p PLC --zzzz
+    No such option:? '?--zzzz'?; see 'fatektool status --help'
 2 sttus
     no such command 'sttus'; did you mean status
 2 schema nope

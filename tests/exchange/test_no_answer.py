@@ -71,14 +71,14 @@ def test_a_dead_line() -> None:
 def test_garbage() -> None:
     error = said(linked(Whatever(b"\x8a\xf0\x13\x91\x7f")))
     assert "received 5 bytes without a valid frame" in error.message
-    assert "--baud, --format and --protocol" in str(error.hint)
+    assert "--baud, --line and --protocol" in str(error.hint)
     assert "termination" in str(error.hint)
 
 
 def test_frames_with_wrong_checksums() -> None:
     error = said(linked(Whatever(b"\x0201460AAAA00\x03")))
     assert "received a damaged frame (checksum: expected" in error.message
-    assert "--baud, --format" in str(error.hint)
+    assert "--baud, --line" in str(error.hint)
 
 
 def test_another_station() -> None:

@@ -39,7 +39,7 @@ def look_for_modules(voice: Voice, network: str, timeout_s: float) -> int:
     apart(
         "network",
         *("port", "stations", "bauds", "formats", "protocols", "station", "baud", "line_format", "protocol"),
-        *("retries", "lock_wait", "low_latency", "trace", "inventory"),
+        *("old_format", "retries", "lock_wait", "low_latency", "trace", "inventory"),
         why="modules are found with one UDP request; --timeout is the time to wait for answers",
     )
     host, port = _host_and_port(network)

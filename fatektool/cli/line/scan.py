@@ -89,7 +89,7 @@ class Bauds(Several):
     "--formats",
     type=Several(type_of(FORMAT)),
     metavar="F,…",
-    help="Formats to try.  [default: that of --format]",
+    help="Formats to try.  [default: that of --line]",
 )
 @click.option(
     "--protocols",
@@ -117,13 +117,14 @@ def scan_command(
     Exit 1 if no station answers.
     """
     apart("network", "port", "stations", "station", why="it asks Ethernet modules, not stations on a line")
-    apart("network", "bauds", "baud", "formats", "line_format", "protocols", "protocol")
+    apart("network", "bauds", "baud", "formats", "line_format", "old_format", "protocols", "protocol")
     apart("network", "trace", "retries", "lock_wait")
     if network is not None:
         return look_for_modules(voice, network, connection.address.timeout_s)
     together("station", holds=False, needs="one PLC; a scan asks those of --stations")
     apart("baud", "bauds")
     apart("line_format", "formats")
+    apart("old_format", "formats")
     apart("protocol", "protocols")
     settings = _settings(connection.address, bauds, formats, protocols)
     for station in _UNITS.intersection(stations):

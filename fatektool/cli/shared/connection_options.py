@@ -5,6 +5,7 @@ An option goes before its environment variable, that before the inventory, and t
 
 from __future__ import annotations
 
+import sys
 from functools import wraps
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar
@@ -17,6 +18,7 @@ from fatektool.checks import YesNo
 from fatektool.cli.shared.connection import Connection
 from fatektool.cli.shared.inventory_file import complete_target, inventory_option
 from fatektool.cli.shared.options import PATH, type_of, voice_options
+from fatektool.cli.shared.output import print_stderr
 from fatektool.errors import UsageError
 from fatektool.inventory.find import plc_named
 
@@ -39,6 +41,7 @@ class Row(NamedTuple):
         help: what it is for.
         metavar: what the help writes for its value.
         variable: the environment variable that gives it too.
+        old: True for the former name of another row's option, which is taken and is not in the help.
     """
 
     field: str
@@ -47,6 +50,7 @@ class Row(NamedTuple):
     help: str
     metavar: str | None = None
     variable: str | None = None
+    old: bool = False
 
     def option(self, *, default: Any) -> Callable[[F], F]:
         """The option, as a decorator of a command."""
@@ -57,7 +61,8 @@ class Row(NamedTuple):
             self.parameter,
             is_flag=is_flag,
             type=None if is_flag else PATH if check is None else type_of(check),
-            default=default,
+            default=None if self.old else default,
+            hidden=self.old,
             show_default=default not in {None, False},
             metavar=self.metavar,
             envvar=self.variable,
@@ -94,10 +99,11 @@ ROWS: Final = (
     Row(
         "format",
         "line_format",
-        ("--format",),
-        f"Data bits, parity, stop bits.  [default: {DEFAULT_FORMATS}]",
+        ("--line",),
+        f"Data bits, parity, stop bits of the serial line.  [default: {DEFAULT_FORMATS}]",
         "7E1",
     ),
+    Row("format", "old_format", ("--format",), "As --line.", "7E1", old=True),
     Row("timeout_s", "timeout", ("--timeout",), "The PLC's time to answer, in addition to wire time.", "S"),
     Row("retries", "retries", ("--retries",), "Retries per request.", "N"),
     Row(
@@ -150,12 +156,27 @@ def given_of(values: dict[str, Any], rows: tuple[Row, ...] = ROWS) -> dict[str, 
         rows: the options.
     """
     source = click.get_current_context().get_parameter_source
-    found = {}
+    found: dict[str, Any] = {}
     for row in rows:
         value, came_from = values.pop(row.parameter), source(row.parameter)
         if came_from in _GIVEN or (came_from is None and value is not None):
+            if row.old:
+                _renamed(row, rows, found)
             found[row.field] = value
     return found
+
+
+def _renamed(old: Row, rows: tuple[Row, ...], found: Mapping[str, Any]) -> None:
+    """Say on a terminal that an option has another name now; a cron job is not to send mail for it.
+
+    Raises:
+        UsageError: both are given.
+    """
+    name = next(row.words[0] for row in rows if row.field == old.field)
+    if old.field in found:
+        raise UsageError(f"{name} and {old.words[0]} are the same option: give {name} alone")
+    if sys.stderr.isatty():
+        print_stderr(f"the line's {old.words[0]} is {name} now; {old.words[0]} still works")
 
 
 def connection_options(function: F) -> F:
@@ -164,8 +185,8 @@ def connection_options(function: F) -> F:
 
 
 def connection_options_but_format(function: F) -> F:
-    """The same for a command whose ``--format`` says more than the line's; it passes ``line_format`` on."""
-    return _connection_options(function, tuple(row for row in ROWS if row.field != "format"))
+    """The same for a command whose own ``--format`` may say the line's too; it passes ``old_format`` on."""
+    return _connection_options(function, tuple(row for row in ROWS if not row.old))
 
 
 def _connection_options(function: F, rows: tuple[Row, ...]) -> F:

@@ -90,10 +90,12 @@ _DEFAULT_MODELS = ", ".join(f"{slave.model} with {name}" for name, slave in SLAV
     "--strict-baud", is_flag=True, help="Understand a client of a pty only at the baud rate of --baud."
 )
 @click.option(
-    "--format",
+    "--line",
     "line_format",
+    metavar="7E1",
     help=f"Bits per character, for --baud.  [default: {DEFAULT_FORMATS}]",
 )
+@click.option("--format", "old_format", hidden=True)
 @click.option("--scan-ms", type=click.FloatRange(0, 60_000), default=0.0, help="Time until an answer.")
 @click.option(
     "--fault",
@@ -145,6 +147,7 @@ def simulate_command(
     baud: int | None,
     strict_baud: bool,
     line_format: str | None,
+    old_format: str | None,
     scan_ms: float,
     fault: tuple[str, ...],
     seed: int,
@@ -199,7 +202,7 @@ def simulate_command(
         faults=fault,
         seed=seed,
         baud=baud,
-        bits_per_char=None if line_format is None else _bits_per_char(line_format),
+        bits_per_char=_bits_per_char(line_format or old_format),
         scan_ms=scan_ms,
         latency_timer_ms=latency_timer,
     )
@@ -233,7 +236,9 @@ def _program(
 def _require_effects(protocol: str, baud: int | None, faults: tuple[str, ...]) -> None:
     """Refuse what would have no effect."""
     apart("program", "program_seed", "swap_program", why="they are for the demonstration program")
-    together("line_format", holds=baud is not None, needs="--baud")
+    apart("line_format", "old_format")
+    for name in ("line_format", "old_format"):
+        together(name, holds=baud is not None, needs="--baud")
     together("seed", holds=bool(faults), needs="--fault")
     together("no_error_character", holds=protocol == "facon", needs="--protocol facon")
 
@@ -262,7 +267,9 @@ def _serve(
         server.close()
 
 
-def _bits_per_char(line_format: str) -> float:
+def _bits_per_char(line_format: str | None) -> float | None:
+    if line_format is None:
+        return None
     line = LineSettings(9600, line_format.upper())
     return line.byte_time_s * line.baud
 

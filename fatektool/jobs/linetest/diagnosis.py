@@ -71,7 +71,7 @@ def _wrong_format(case: Case) -> Finding | None:
         fault=True,
         finding=f"the PLC sends 7 bits and parity; this line is set to {case.line.format}",
         evidence=f"the bytes are frames if bit 8 is ignored: {sample(result)}",
-        advice="try --format 7E1 (the factory setting), or 7O1",
+        advice="try --line 7E1 (the factory setting), or 7O1",
     )
 
 

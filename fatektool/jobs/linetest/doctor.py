@@ -168,7 +168,7 @@ def _answers_elsewhere(found: Station) -> Finding:
         fault=True,
         finding=f"station {found.station} answers at {line}",
         evidence="one exchange of its brief status (40)",
-        advice=f"give --station {found.station} --baud {line.baud} --format {line.format}",
+        advice=f"give --station {found.station} --baud {line.baud} --line {line.format}",
     )
 
 

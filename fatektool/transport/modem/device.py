@@ -132,7 +132,7 @@ class ModemTransport(Transport):
         got = f"received {heard.hex(' ').upper()}, which is not a result" if heard else "nothing received"
         raise LineError(
             f"{self._port.name}: no modem answers {_SETUP} at {self._port.serial_settings}: {got}",
-            hint="check that the modem is on, and its cable. Most modems need --format 8N1",
+            hint="check that the modem is on, and its cable. Most modems need --line 8N1",
             result=None,
         )
 

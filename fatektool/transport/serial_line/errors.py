@@ -44,7 +44,7 @@ def open_error(target: str, settings: LineSettings, error: Exception) -> Fatekto
     if number in {errno.EINVAL, errno.ENOTTY} or isinstance(error, ValueError):
         return LineError(
             f"{target}: cannot be used as a serial port at {settings}: {text}",
-            hint="check the name; check that the adapter supports this --baud and --format",
+            hint="check the name; check that the adapter supports this --baud and --line",
         )
     hint = "check the URL" if "://" in target else "'fatektool ports' lists the serial ports"
     return LineError(f"{target}: cannot open: {text}", hint=hint)
@@ -129,7 +129,7 @@ def network_error(
     if "parameter change" in str(error) or "rejected value" in str(error):
         return LineError(
             f"{target}: the gateway does not set its serial port to {settings}",
-            hint="check --baud and --format; or set the port in the gateway, and use tcp:// or socket://",
+            hint="check --baud and --line; or set the port in the gateway, and use tcp:// or socket://",
         )
     return LineError(f"{target}: cannot open: {error}", hint="check the URL, and that the gateway is on")
 

@@ -185,7 +185,7 @@ def test_seven_data_bits_do_not_carry_it(cli: Cli) -> None:
     refused = cli("status", "-p", "/dev/ttyS99", "--protocol", "mseries", "--format", "7e1")
     assert refused.code == 2
     assert (
-        "format: expected 8 data bits, as mseries on a serial line needs, got 7E1; add --format 8E1 or 8N1"
+        "format: expected 8 data bits, as mseries on a serial line needs, got 7E1; add --line 8E1 or 8N1"
         in one_line(refused.err)
     )
     missing = cli("status", "-p", "/dev/ttyS99", "--protocol", "mseries")  # 8E1 unless named

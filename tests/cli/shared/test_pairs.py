@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from tests.cli.running import Cli, Press
 
 LINE = (
-    "--port --inventory --station --protocol --baud --format --timeout --retries --lock-wait --low-latency "
-    "--trace --read-only"
+    "--port --inventory --station --protocol --baud --line --format --timeout --retries --lock-wait "
+    "--low-latency --trace --read-only"
 )
 VOICE = "--json --quiet --verbose"
 FREE = {
@@ -112,7 +112,9 @@ APART = [
     ("scan", "--network 127.0.0.1", "--stations 1-3"),
     ("scan", "--network 127.0.0.1", "--bauds 9600"),
     ("scan", "--network 127.0.0.1", "--trace x.pcap"),
+    ("scan -p sim:", "--line 7E1", "--formats 7E1"),
     ("scan -p sim:", "--format 7E1", "--formats 7E1"),
+    ("status -p sim:", "--line 7E1", "--format 7E1"),
     ("scan -p sim:", "--protocol facon", "--protocols facon"),
     ("check -p sim:", "--reference old.json", "--no-reference"),
     ("fleet check", "--no-reference", "--on-change true"),
@@ -159,6 +161,7 @@ ALONE = [
     (SIMULATE, "--baud 9600 --strict-baud"),
     (SIMULATE, "--replay-speed 2"),
     (SIMULATE, "--format 7E1"),
+    (SIMULATE, "--line 7E1"),
     (SIMULATE, "--seed 3"),
     (SIMULATE + " --protocol mseries", "--no-error-character"),
 ]

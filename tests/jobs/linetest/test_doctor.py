@@ -110,7 +110,7 @@ def test_a_plc_at_another_speed_is_found() -> None:
     found = examine(plc, lambda step, _done, _total: steps.append(step))
     assert rules(found) == {"silence", "answers-elsewhere"}
     advice = found.findings[-1].advice
-    assert advice == "give --station 3 --baud 38400 --format 7E1"
+    assert advice == "give --station 3 --baud 38400 --line 7E1"
     assert set(steps) == {"loopback", "other settings"}
     assert line.set_to == 9600
 
@@ -155,7 +155,7 @@ def test_a_plc_that_is_late_is_not_looked_for_elsewhere() -> None:
 @pytest.mark.parametrize("baud", BAUDS[1:])
 def test_a_plc_is_found_at_every_speed_that_fatek_has(baud: int) -> None:
     found = examine(doctored(StatusOnly({1}, baud=baud), 1))
-    assert f"--baud {baud} --format 7E1" in found.findings[-1].advice
+    assert f"--baud {baud} --line 7E1" in found.findings[-1].advice
 
 
 def test_the_search_ends_and_says_what_was_tried() -> None:

@@ -40,7 +40,7 @@ F = TypeVar("F", bound="Callable[..., Any]")
 
 
 def either_format(function: F) -> F:
-    """``--format`` is that of the snapshot or of the line; both may be given, in any order."""
+    """``--format`` is that of the snapshot; the line's, which is ``--line``, is taken too, in any order."""
 
     @wraps(function)
     def with_formats(*args: Any, formats: tuple[str, ...], **rest: Any) -> Any:
@@ -49,14 +49,14 @@ def either_format(function: F) -> F:
         if len(forms) > 1 or len(lines) > 1:
             raise UsageError(
                 f"--format {' '.join(formats)}: expected one of {', '.join(FORMATS)}, "
-                f"and for the line one such as 7E1"
+                f"once, and --line for the line"
             )
         if lines and not _LINE.fullmatch(lines[0]):
             raise UsageError(
-                f"--format {lines[0]}: expected one of {', '.join(FORMATS)}, or a line's format such as 8N1"
+                f"--format {lines[0]}: expected one of {', '.join(FORMATS)}; the line's format is --line"
             )
         form = forms[0].lower() if forms else None
-        return function(*args, form=form, line_format=lines[0] if lines else None, **rest)
+        return function(*args, form=form, old_format=lines[0] if lines else None, **rest)
 
     return with_formats  # type: ignore[return-value]  # click's decorators hand back what they get
 
@@ -82,8 +82,7 @@ def either_format(function: F) -> F:
     "formats",
     multiple=True,
     metavar="json|ndjson|csv|influx|prometheus",
-    help="Format of the snapshot, by default that of FILE's ending, else json; "
-    "the line's format, such as 8N1, can be given here too.",
+    help="Format of the snapshot.  [default: that of FILE's ending, else json]",
 )
 @click.option(
     "--keep", metavar="N|DAYSd", help="Keep N snapshots, or those of so many days, in DIR or FILE.ndjson."

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from fatektool.cli.shared.output import Voice
 
 _ROWS: Final = tuple(row._replace(variable=None) for row in ROWS if row.field in CHECKS)
-_OF_SCAN: Final = ("port", "station", "protocol", "baud", "line_format")
+_OF_SCAN: Final = ("port", "station", "protocol", "baud", "line_format", "old_format")
 _MAX_SCAN: Final = 4 << 20
 
 
