@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.counts import counted
 from fatektool.program.headers.header import PAGE_WORDS
-from fatektool.program.image import page_count
+from fatektool.program.image import page_count, ranges
 from fatektool.report.markup import DASH, Html, figure, table, tag, when
 from fatektool.report.networks import changed_networks
 from fatektool.report.page import Report, Verdict, code, note, render, section
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
 MOST_PAGES: Final = 64
 _ROW: Final = 8
-_PLACES_SHOWN: Final = 12
 
 
 def verify_report(
@@ -112,7 +111,7 @@ def _report(
         (f"Ladder size, {side}", figure(size, unit="words")) for side, size in zip(sides, sizes, strict=True)
     ]
     counts = [
-        ("Pages that differ", figure(document["pages_differ"])),
+        ("Pages that differ", _differing(document)),
         ("Words that differ", figure(document["words_differ"])),
     ]
     pages = _pages(document, programs)
@@ -171,19 +170,46 @@ def _map(document: Mapping[str, Any], pages: int) -> Html:
     return section("Map of the pages", tag("p", said), tag("figure", drawn))
 
 
+def _differing(document: Mapping[str, Any]) -> object:
+    """How many pages differ, and which."""
+    numbers = [page["page"] for page in document["differences"]]
+    count = figure(document["pages_differ"])
+    return tag("span", count, f": {ranges(numbers)}") if len(numbers) > 1 else count
+
+
 def _changes(document: Mapping[str, Any], sides: tuple[str, str]) -> Html:
+    """A row for each page, or for neighbours in which the same words differ."""
     rows = []
-    for number, page in enumerate(document["differences"]):
-        shown = figure(page["page"])
-        name = tag("a", shown, href=f"#page-{page['page']}") if number < MOST_PAGES else shown
-        places = [word["word"] for word in page["words"]]
-        more = len(places) - _PLACES_SHOWN
-        text = ", ".join(map(str, places[:_PLACES_SHOWN])) + (f" and {more} more" if more > 0 else "")
-        rows.append((name, figure(len(places)) if places else DASH, text or "only in one of the two"))
+    position = 0
+    for run in _runs(document["differences"]):
+        first, last = run[0], run[-1]["page"]
+        shown = figure(first["page"]) if first["page"] == last else tag("span", f"{first['page']}-{last}")
+        name = tag("a", shown, href=f"#page-{first['page']}") if position < MOST_PAGES else shown
+        places = _places(first)
+        rows.append(
+            (name, figure(len(places)) if places else DASH, ranges(places) or "only in one of the two")
+        )
+        position += len(run)
     return section(
         "Pages that differ",
         table(f"From {sides[0]} to {sides[1]}", ("Page", "Words", "Which words"), rows, numeric=(0, 1)),
     )
+
+
+def _runs(pages: Sequence[Mapping[str, Any]]) -> list[list[Mapping[str, Any]]]:
+    """Neighbours in which the same words differ, together."""
+    runs: list[list[Mapping[str, Any]]] = []
+    for page in pages:
+        last = runs[-1][-1] if runs else None
+        if last is not None and page["page"] == last["page"] + 1 and _places(page) == _places(last):
+            runs[-1].append(page)
+        else:
+            runs.append([page])
+    return runs
+
+
+def _places(page: Mapping[str, Any]) -> list[int]:
+    return [word["word"] for word in page["words"]]
 
 
 def _words(

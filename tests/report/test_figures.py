@@ -109,6 +109,7 @@ def test_what_changed_is_marked_on_both_sides(command: str) -> None:
     page = parse(html)
     sides = ("file", "PLC") if command == "verify" else ("A", "B")
     assert facts(page)["Pages that differ"].figures == [3]
+    assert facts(page)["Pages that differ"].text == "3: 3, 7, 16"
     assert facts(page)["Words that differ"].figures == [3]
     assert flat(page, f"From {sides[0]} to {sides[1]}") == [[3, 1], [7, 1], [16, 1]]
     for number in (3, 7, 16):
@@ -160,7 +161,11 @@ def test_a_thousand_changed_pages() -> None:
     html = diff_report(diffed(a, b, check_it=False), a, b, time=TIME)
     assert len(html) < 1_500_000
     page = parse(html)
-    assert len(flat(page, "From A to B")) == 1024
+    shown = [row[0].text for row in rows(page, "From A to B")]
+    assert len(shown) < 1024
+    numbers = [tuple(map(int, text.split("-"))) for text in shown]
+    assert [each for ends in numbers for each in range(ends[0], ends[-1] + 1)] == list(range(1, 1025))
+    assert facts(page)["Pages that differ"].text == "1024: 1-1024"
     sides = [each for each in page.every("section") if each.attributes.get("class") == "page"]
     assert len(sides) == MOST_PAGES
     assert f"The first {MOST_PAGES} pages that differ are shown. The other {1024 - MOST_PAGES}" in page.text

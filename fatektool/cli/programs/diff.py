@@ -34,7 +34,8 @@ def diff_command(
 ) -> int:
     """Compare the programs A and B: exit 0 if they are the same, 1 if not. Needs no PLC.
 
-    Each is a backup or a WinProladder project: of that the image is compared, whatever the order of bytes.
+    Each is a backup or a WinProladder project, of which the image is compared, in either byte order. -v shows
+    the words that differ.
     """
     from fatektool.project.comparison import compare_files
 

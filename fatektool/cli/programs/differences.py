@@ -6,19 +6,20 @@ from typing import TYPE_CHECKING, Final
 
 from fatektool.cli.programs.documents import diff_document
 from fatektool.cli.shared.report import write_report
+from fatektool.counts import counted
 from fatektool.files.times import utc
-from fatektool.program.headers.header import PAGE_WORDS
+from fatektool.program.image import ranges
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
     from fatektool.cli.shared.output import Voice
     from fatektool.ladder.differences import NetworkChange
-    from fatektool.program.compare import Comparison
+    from fatektool.program.compare import Comparison, PageDifference
     from fatektool.project.comparison import ProgramComparison
 
-_WORDS_SHOWN: Final = 8
+_COLUMNS: Final = 4
 _WHOLE: Final = 40
 _CONTEXT: Final = 3
 
@@ -51,18 +52,20 @@ def show_differences(
         networks = found.networks or ()
         html = diff_report(document, found.a, found.b, time=utc(), changes=networks, comments=comments)
         write_report(report, html)
-    voice.show(document, program_lines(found, same, a[0], b[0], comments))
+    voice.show(document, program_lines(found, same, (a[0], b[0]), comments, words=voice.verbose))
+    say_how_to_see_words(found, voice)
     return 0 if found.same else 1
 
 
-def difference_lines(found: Comparison, same: str, a: str, b: str) -> Iterator[str]:
-    """What differs, a line a page; one line if nothing does.
+def difference_lines(found: Comparison, same: str, a: str, b: str, *, words: bool) -> Iterator[str]:
+    """What differs between the pages of two programs; one line if nothing does.
 
     Args:
         found: the comparison.
         same: the line for two programs that are the same.
         a: what the first is called.
         b: what the second is called.
+        words: also show the words that differ, page by page.
     """
     if found.same:
         yield same
@@ -71,42 +74,73 @@ def difference_lines(found: Comparison, same: str, a: str, b: str) -> Iterator[s
         yield f"differs: ladder size {found.a_ladder_words} words in {a}, {found.b_ladder_words} in {b}"
     if found.pages:
         yield f"differs: {_extent(found)} ({a} -> {b})"
-    for page in found.pages:
-        if not page.words:
-            yield f"  page {page.page}: only in one of them"
-            continue
-        shown = ", ".join(f"{word.word}: {word.a:04X} -> {word.b:04X}" for word in page.words[:_WORDS_SHOWN])
-        more = len(page.words) - _WORDS_SHOWN
-        rest = f", {more} more" if more > 0 else ""
-        yield f"  page {page.page}, {len(page.words)} of {PAGE_WORDS} words: {shown}{rest}"
+    in_both = [page.page for page in found.pages if page.a is not None and page.b is not None]
+    if in_both:
+        yield f"{_pages(in_both)}"
+    for name, only in (
+        (a, [page.page for page in found.pages if page.b is None]),
+        (b, [page.page for page in found.pages if page.a is None]),
+    ):
+        if only:
+            yield f"{_pages(only)}: only in {name}"
+    if words:
+        for page in found.pages:
+            yield from _word_lines(page)
+
+
+def _pages(numbers: Sequence[int]) -> str:
+    """``page 7``, ``pages 1-155``."""
+    return f"page{'' if len(numbers) == 1 else 's'} {ranges(numbers)}"
+
+
+def _word_lines(page: PageDifference) -> Iterator[str]:
+    """The words of a page that differ, in columns; nothing for a page that only one side has."""
+    if not page.words:
+        return
+    yield f"page {page.page}, {counted(len(page.words), 'word')}: {ranges(word.word for word in page.words)}"
+    shown = [f"{word.word:>3}: {word.a:04X} -> {word.b:04X}" for word in page.words]
+    for first in range(0, len(shown), _COLUMNS):
+        yield f"  {'  '.join(shown[first : first + _COLUMNS])}"
 
 
 def program_lines(
-    found: ProgramComparison, same: str, a: str, b: str, comments: Mapping[str, str] | None = None
+    found: ProgramComparison,
+    same: str,
+    sides: tuple[str, str],
+    comments: Mapping[str, str] | None = None,
+    *,
+    words: bool,
 ) -> Iterator[str]:
-    """What differs between two programs: a line a page, then the networks as a unified diff of instructions.
+    """What differs between two programs: the pages, then the networks as a unified diff of instructions.
 
     Args:
         found: the comparison.
         same: the line for two programs that are the same.
-        a: what the first is called.
-        b: what the second is called.
+        sides: what the first and the second are called.
         comments: of elements, shown beside the instructions.
+        words: also show the words that differ, page by page.
     """
-    yield from difference_lines(found.pages, same, a, b)
+    yield from difference_lines(found.pages, same, *sides, words=words)
     if found.networks is None:
         return
     if found.same_code:
         if not found.same and found.code is not None:
-            size = f"{_count(len(found.code.words), 'word')} in {_count(len(found.code.networks), 'network')}"
+            code = found.code
+            size = f"{counted(len(code.words), 'word')} in {counted(len(code.networks), 'network')}"
             exchanged = found.b is not None and found.a.header.byte_order != found.b.header.byte_order
             why = "the two bytes of each word are exchanged" if exchanged else "what differs is not code"
             yield f"same code: {size}; {why}"
         return
     yield f"networks: {found.networks_summary}"
-    yield f"--- {a}"
-    yield f"+++ {b}"
+    yield f"--- {sides[0]}"
+    yield f"+++ {sides[1]}"
     yield from change_lines(found.networks, comments)
+
+
+def say_how_to_see_words(found: ProgramComparison, voice: Voice) -> None:
+    """Name the option that shows the words, if some differ and are not shown."""
+    if found.pages.word_count and not voice.verbose and not voice.json:
+        voice.say("-v shows the words of each page that differs")
 
 
 def change_lines(
@@ -157,8 +191,4 @@ def size_of(found: ProgramComparison) -> str:
 
 
 def _extent(found: Comparison) -> str:
-    return f"{_count(found.word_count, 'word')} in {_count(len(found.pages), 'page')}"
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+    return f"{counted(found.word_count, 'word')} in {counted(len(found.pages), 'page')}"

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fatektool.cli.programs.differences import program_lines
+from fatektool.cli.programs.differences import program_lines, say_how_to_see_words
 from fatektool.cli.programs.documents import verify_document
 from fatektool.cli.programs.program_files import comments_for, comments_options, program_file
 from fatektool.cli.shared.connection_options import connection_options
@@ -39,7 +39,7 @@ def verify_command(
 ) -> int:
     """Compare the PLC's program with FILE, a backup or a WinProladder project: exit 0 if the same, 1 if not.
 
-    Pages that differ are read again. The PLC can be in RUN.
+    Pages that differ are read again. The PLC can be in RUN. -v shows the words that differ.
     """
     on_file = program_file(file, voice, encoding)
     texts = on_file.element_comments
@@ -60,5 +60,6 @@ def verify_command(
         from fatektool.report.program import verify_report
 
         write_report(report, verify_report(document, found.a, found.networks or (), texts))
-    voice.show(document, program_lines(found, same, "file", "PLC", texts))
+    voice.show(document, program_lines(found, same, (str(file), "PLC"), texts, words=voice.verbose))
+    say_how_to_see_words(found, voice)
     return 0 if found.same else 1

@@ -98,7 +98,7 @@ def test_show(filled: Cli) -> None:
 def test_diff(filled: Cli, book: Book) -> None:
     done = filled("history", "diff", "press", "--report", "x.html")
     assert done.code == 1
-    assert re.match(r"differs: 2 words in 2 pages \(press@\w{10} -> press@\w{10}\)\n  page 3, ", done.out)
+    assert re.match(r"differs: 2 words in 2 pages \(press@\w{10} -> press@\w{10}\)\npages 3, ", done.out)
     assert "<title>" in (book.folder.parent / "x.html").read_text(encoding="utf-8")
     document = filled("history", "diff", "press", "HEAD", "~1", "--json").document("diff")
     assert document["a"]["sha256"] == TWO.program.sha256
