@@ -14,8 +14,9 @@ that words -> table -> words is the identity. ``faults`` returns the faults of a
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, Generic, TypeVar
 
 from fatektool.errors import DataError
 from fatektool.plcports.checks import check_clink, check_high_speed, check_mbus
@@ -26,25 +27,27 @@ from fatektool.plcports.results import Fault
 from fatektool.plcports.rows import ROW_WORDS, SharedBlock, Transaction
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from fatektool.protocol.elements import Element
 
+
+R = TypeVar("R", Transaction, SharedBlock)
 
 MBUS_MARK: Final = 0xA550
 _NO_ROWS: Final = Fault(None, None, "the table has no transactions")
 
 
 @dataclass(frozen=True, slots=True)
-class ClinkTable:
-    """MD0.
+class CountedTable(ABC, Generic[R]):
+    """A word with the number of rows, then the rows.
 
     Attributes:
-        rows: 0 to 255 transactions.
+        rows: 0 to 255 transactions or blocks.
         count_high: the high byte of the count, which the PLC ignores.
     """
 
-    rows: tuple[Transaction, ...]
+    rows: tuple[R, ...]
     count_high: int = 0
 
     def __post_init__(self) -> None:
@@ -56,33 +59,30 @@ class ClinkTable:
 
     def faults(self) -> list[Fault]:
         """Everything that the paper does not allow."""
-        found = [fault for number, row in enumerate(self.rows) for fault in check_clink(number, row)]
+        found = [fault for number, row in enumerate(self.rows) for fault in self._check(number, row)]
         return found if self.rows else [_NO_ROWS]
 
+    @abstractmethod
+    def _check(self, number: int, row: R) -> Iterable[Fault]:
+        """Everything that the paper does not allow in one row."""
 
-@dataclass(frozen=True, slots=True)
-class HighSpeedTable:
-    """MD3.
 
-    Attributes:
-        rows: 0 to 255 blocks.
-        count_high: the high byte of the count, which the PLC ignores.
-    """
+class ClinkTable(CountedTable[Transaction]):
+    """MD0: transactions."""
 
-    rows: tuple[SharedBlock, ...]
-    count_high: int = 0
+    __slots__ = ()
 
-    def __post_init__(self) -> None:
-        _require_count(len(self.rows), self.count_high)
+    def _check(self, number: int, row: Transaction) -> Iterable[Fault]:
+        return check_clink(number, row)
 
-    def to_words(self) -> tuple[int, ...]:
-        """The contents of the registers from SR on."""
-        return self.count_high << 8 | len(self.rows), *(word for row in self.rows for word in row.to_words())
 
-    def faults(self) -> list[Fault]:
-        """Everything that the paper does not allow."""
-        found = [fault for number, row in enumerate(self.rows) for fault in check_high_speed(number, row)]
-        return found if self.rows else [_NO_ROWS]
+class HighSpeedTable(CountedTable[SharedBlock]):
+    """MD3: blocks."""
+
+    __slots__ = ()
+
+    def _check(self, number: int, row: SharedBlock) -> Iterable[Fault]:
+        return check_high_speed(number, row)
 
 
 @dataclass(frozen=True, slots=True)
