@@ -160,7 +160,8 @@ class Edges:
         most = self._costs.most(symbol)
         dear = (ahead + word) / (value - word / WORD) if value * WORD > word else most
         near = line.place_past(first + min(int(dear) + 1, most), place)
-        unpacked = max(line.place_past(line.bound // STEP * STEP, place), near)
+        words_end = line.bound // STEP * STEP if line.bound >= WORD else 0
+        unpacked = max(line.place_past(words_end, place), near)
         limit = line.place_past(first + most, place)
         for to in (*range(place + 1, near + 1), *range(unpacked + 1, limit + 1)):
             last = line.lasts[to - 1]

@@ -6,7 +6,10 @@ Keys in this order::
     header{valid family signature byte_order ladder_words code_words capacity_words
            checksum{stored computed valid} sums{settings labels ror}}
     ladder_words page_count passes proof{known_from pages_known pages_read_twice}
-    sha256 pages[256 hex digits, …]
+    sha256 pages[256 hex digits, …] data{…}
+
+``data`` is there if the PLC's data were saved too: see ``fatektool.program.data.part``. A version from before
+there were data ignores it, and takes the program alone.
 
 Older files have no ``proof``, or only ``valid``, ``signature`` and ``ladder_words`` in ``header``.
 ``sha256`` is of all pages' bytes in order. A backup file is always checked completely: an invalid file is
@@ -17,18 +20,21 @@ from __future__ import annotations
 
 import json
 import re
-import reprlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.errors import DataError
 from fatektool.files.atomic import read_bounded, write_whole
 from fatektool.files.strict_json import read_json
+from fatektool.program.checked_document import CheckedDocument, short
 from fatektool.program.headers.families import short_document
 from fatektool.program.headers.header import PAGE_BYTES
 from fatektool.program.image import Program, is_whole, page_count
 from fatektool.program.plc_record import fault_of
+
+if TYPE_CHECKING:
+    from fatektool.program.data.part import DataPart
 
 SCHEMA: Final = "fatektool.backup/1"
 LARGEST_FILE: Final = 4 << 20  # the largest image takes 270 kB
@@ -102,6 +108,7 @@ class Backup:
         plc: the status document's ``status`` and ``system``.
         passes: how many times the whole program was read.
         proof: how its pages were verified; None in older files.
+        data: the PLC's data; None if the program alone was saved.
     """
 
     program: Program
@@ -111,6 +118,7 @@ class Backup:
     plc: dict[str, Any]
     passes: int
     proof: Proof | None = None
+    data: DataPart | None = None
 
     @property
     def proof_words(self) -> str:
@@ -146,7 +154,8 @@ class Backup:
         }
         text = json.dumps(head, indent=1, allow_nan=False).removesuffix("\n}")
         pages = ",\n".join(f'  "{page.hex().upper()}"' for page in program.pages)
-        return f'{text},\n "pages": [\n{pages}\n ]\n}}\n'.encode()
+        data = "" if self.data is None else f',\n "data": {_indented(self.data.document())}'
+        return f'{text},\n "pages": [\n{pages}\n ]{data}\n}}\n'.encode()
 
     @classmethod
     def parse(cls, data: bytes, name: str = "backup") -> Backup:
@@ -201,17 +210,18 @@ def _json(data: bytes, name: str) -> dict[str, Any]:
     if not isinstance(document, dict) or document.get("schema") != SCHEMA:
         got = document.get("schema") if isinstance(document, dict) else type(document).__name__
         raise DataError(
-            f"{name}: not a backup file of this version: expected schema {SCHEMA!r}, got {_short(got)}",
+            f"{name}: not a backup file of this version: expected schema {SCHEMA!r}, got {short(got)}",
             hint=_RIGHT_FILE,
         )
     return document
 
 
-class _Reader:
-    """Parses a document; raises the first fault."""
+def _indented(document: dict[str, Any]) -> str:
+    return json.dumps(document, indent=1, allow_nan=False).replace("\n", "\n ")
 
-    def __init__(self, name: str) -> None:
-        self.name = name
+
+class _Reader(CheckedDocument):
+    """Parses a document; raises the first fault."""
 
     def backup(self, document: dict[str, Any]) -> Backup:
         ladder_words = self.number(document, "ladder_words", 1, 0xFFFF)
@@ -227,16 +237,21 @@ class _Reader:
         )
         self.same("sha256", program.sha256, self.text(document, "sha256").lower())
         header = self.part(document, "header")
-        short = short_document(program.pages[0], ladder_words)
-        for key, value in (short if header.keys() == short.keys() else found.header_document).items():
+        brief = short_document(program.pages[0], ladder_words)
+        for key, value in (brief if header.keys() == brief.keys() else found.header_document).items():
             self.same(f"header.{key} (page 0)", value, header.get(key))
         if not _TIME.fullmatch(found.created):
             raise self.fault("created: expected a UTC time such as 2026-11-22T03:15:00Z", found.created)
         fault = fault_of(found.plc)
         if fault is not None:
             raise self.fault(*fault)
-        self.same("plc.system.ladder_words", ladder_words, found.plc["system"]["ladder_words"])
-        return found
+        system = found.plc["system"]
+        self.same("plc.system.ladder_words", ladder_words, system["ladder_words"])
+        if "data" not in document:
+            return found
+        from fatektool.program.data.reader import read_part
+
+        return replace(found, data=read_part(self, self.part(document, "data"), system))
 
     def pages(self, document: dict[str, Any], ladder_words: int) -> tuple[bytes, ...]:
         pages = document.get("pages")
@@ -274,36 +289,3 @@ class _Reader:
             self.text(part, "protocol", "source."),
             line,
         )
-
-    def part(self, document: dict[str, Any], key: str, where: str = "") -> dict[str, Any]:
-        value = document.get(key)
-        if not isinstance(value, dict):
-            raise self.fault(f"{where}{key}: expected an object", value)
-        return value
-
-    def text(self, document: dict[str, Any], key: str, where: str = "") -> str:
-        value = document.get(key)
-        if not isinstance(value, str):
-            raise self.fault(f"{where}{key}: expected a text", value)
-        return value
-
-    def number(self, document: dict[str, Any], key: str, first: int, last: int, where: str = "") -> int:
-        value = document.get(key)
-        if not isinstance(value, int) or isinstance(value, bool) or not first <= value <= last:
-            raise self.fault(f"{where}{key}: expected a whole number of {first} to {last}", value)
-        return value
-
-    def same(self, what: str, expected: object, got: object) -> None:
-        if expected != got or type(expected) is not type(got):
-            raise self.fault(f"{what}: expected {expected!r} from the pages", got)
-
-    def fault(self, what: str, got: object) -> DataError:
-        return DataError(
-            f"{self.name}: {what}, got {_short(got)}",
-            hint="the file is damaged or was edited: use another backup",
-        )
-
-
-def _short(value: object) -> str:
-    size = f" ({len(value)} characters)" if isinstance(value, str) and len(value) > 30 else ""
-    return reprlib.repr(value) + size

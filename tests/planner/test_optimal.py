@@ -122,6 +122,7 @@ def test_chosen_sets(text: str, codec: str, turnaround: float) -> None:
 @pytest.mark.parametrize(
     ("text", "limits"),
     [
+        ("S0-S7", {"S": 8}),  # no word fits
         ("M90-M99", {"M": 100}),
         ("M96-M103", {"M": 104}),  # the word begins at 88
         ("M8 M20 M40 M99", {"M": 100}),

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from fatektool.cli.programs.data_view import data_rows, warn_of_data
 from fatektool.cli.programs.documents import saved_document
 from fatektool.cli.programs.raw_file import require_raw_name
 from fatektool.cli.shared.connection_options import connection_options
@@ -15,7 +16,7 @@ from fatektool.cli.shared.options import PATH, is_standard
 from fatektool.cli.shared.output import Voice, table
 from fatektool.cli.shared.pairs import apart, together
 from fatektool.cli.shared.streams import print_bytes
-from fatektool.errors import FatektoolError
+from fatektool.errors import FatektoolError, PlcError
 from fatektool.files.atomic import require_place, write_whole
 from fatektool.files.times import stamp, utc
 from fatektool.jobs.programs.backup import read_backup
@@ -29,6 +30,11 @@ if TYPE_CHECKING:
 
 @click.command("backup", epilog="Example: fatektool backup press.json -p /dev/ttyUSB0 -s 3")
 @click.argument("file", required=False, type=PATH)
+@click.option(
+    "--data",
+    is_flag=True,
+    help="Save registers, relays, current values, disabled discretes and port settings too.",
+)
 @click.option("--force", is_flag=True, help="Replace FILE if it exists.")
 @click.option("--single-pass", is_flag=True, help="Read once instead of twice; nothing is compared.")
 @click.option(
@@ -45,13 +51,14 @@ def backup_command(
     voice: Voice,
     *,
     file: Path | None,
+    data: bool,
     force: bool,
     single_pass: bool,
     known: Path | None,
     any_header: bool,
     raw: Path | None,
-) -> None:
-    """Read the PLC's program into FILE.
+) -> int:
+    """Read the PLC's program into FILE, with --data also its data.
 
     Every page is read twice and compared, and the header is checked. Pages that are equal to those of an
     existing backup are read once. FILE is written completely or not at all; without FILE its name has station
@@ -69,28 +76,34 @@ def backup_command(
     pages = first_known((former, reference), voice.detail) if known is None else known_in(known)
     with connection.open(voice, needs=(Command.READ_PAGE,)) as plc, voice.progress() as bar:
         result = read_backup(
-            plc, single_pass=single_pass, any_header=any_header, known=pages, progress=bar.update
+            plc, single_pass=single_pass, any_header=any_header, known=pages, data=data, progress=bar.update
         )
         counters = plc.link.counters
     found = result.backup
     voice.detail(f"line: {counters}")
     warn_of_image(found.program, voice)
+    code = 0
+    if found.data is not None and found.data.errors:
+        warn_of_data(found.data, voice)
+        code = PlcError.exit_code
     if not is_standard(path):
         save_backup(found, path, overwrite=force)
     if raw is not None:
         _write_raw(raw, found, path, overwrite=force)
     if is_standard(path):
         print_bytes(found.to_bytes())
-        return
+        return code
     program = found.program
     size = f"{program.ladder_words} words, {len(program.pages)} pages"
-    rows = [
+    rows: list[tuple[str, object]] = [
         ("saved", path),
         ("program", f"{program.header.text()}, {size}"),
         ("pages", found.proof_words),
         ("sha256", program.sha256),
+        *data_rows(found.data),
     ]
     voice.show(saved_document(result, path), table(rows))
+    return code
 
 
 def _write_raw(raw: Path, found: Backup, path: Path, *, overwrite: bool) -> None:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from fatektool.ladder.networks import Network
     from fatektool.program.archive import Backup
     from fatektool.program.compare import Comparison
+    from fatektool.program.data.part import DataPart
     from fatektool.project.comments import Comments
     from fatektool.project.comparison import ProgramComparison
     from fatektool.project.program_file import ProgramFile
@@ -47,8 +48,14 @@ def backup_summary(backup: Backup) -> dict[str, Any]:
         "passes": backup.passes,
         "proof": None if backup.proof is None else backup.proof.document(),
         "sha256": backup.program.sha256,
+        "data": None if backup.data is None else data_summary(backup.data),
         "warnings": image_warnings(backup.program),
     }
+
+
+def data_summary(data: DataPart) -> dict[str, Any]:
+    """What the data of a backup are, without their values."""
+    return {**data.summary(), "disabled": dict(data.disabled)}
 
 
 def saved_document(found: BackupResult, file: Path) -> dict[str, Any]:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fatektool.cli.programs.data_view import data_rows
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -31,6 +33,7 @@ def backup_rows(found: Backup, file: str) -> Iterator[tuple[str, object]]:
     yield "ladder size", f"{program.ladder_words} words, {len(program.pages)} pages, {used} not empty"
     yield "pages", found.proof_words
     yield "sha256", program.sha256
+    yield from data_rows(found.data)
 
 
 def project_rows(found: ProgramFile) -> Iterator[tuple[str, object]]:

@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, Any, Final
 from fatektool.errors import DataError, PlcError, PlcNotReady
 from fatektool.jobs.elements.ledger import Fate, Ledger
 from fatektool.jobs.elements.reads import named
+from fatektool.jobs.elements.spans import spans_of
 from fatektool.jobs.elements.writes import NotTaken, write_elements
 from fatektool.jobs.status import brief_or_none
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Sequence
 
     from fatektool.client import Plc
     from fatektool.jobs.progress import Progress
@@ -139,25 +140,10 @@ class PlannedValues:
 
     def _spans(self, fate: Fate) -> list[str]:
         elements = (change.element for change in self._changes)
-        return _spans_of(element for element in elements if self._fate_of(element) is fate)
+        return spans_of(element for element in elements if self._fate_of(element) is fate)
 
     def _fate_of(self, element: Element) -> Fate:
         """What is known of a value: nothing of one that did not take, or was being written back."""
         if element in self._doubtful or self._undone.fate_of(element) is not Fate.BEFORE:
             return Fate.UNCERTAIN
         return self._ledger.fate_of(element)
-
-
-def _spans_of(elements: Iterable[Element]) -> list[str]:
-    """Elements in ranges, such as ``R0-R63``."""
-    spans: list[list[Element]] = []
-    for element in sorted(elements):
-        last = spans[-1][-1] if spans else None
-        if last is not None and (last.symbol, last.address + last.kind.stride) == (
-            element.symbol,
-            element.address,
-        ):
-            spans[-1].append(element)
-        else:
-            spans.append([element])
-    return [f"{span[0]}" if len(span) == 1 else f"{span[0]}-{span[-1]}" for span in spans]

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from fatektool.callbacks import ignore
 from fatektool.files.times import utc
+from fatektool.jobs.data.reading import read_data
 from fatektool.jobs.programs.proving import read_proven
 from fatektool.jobs.programs.reading import ProgramReading, read_program
 from fatektool.program.archive import Backup, Source
@@ -37,12 +38,15 @@ def read_backup(
     single_pass: bool = False,
     any_header: bool = False,
     known: KnownPages | None = None,
+    data: bool = False,
     progress: Progress = ignore,
 ) -> BackupResult:
     """``backup``, with the time that it took; arguments and errors are the same."""
     clock = plc.link.transport.clock
     began = clock()
-    found = backup(plc, single_pass=single_pass, any_header=any_header, known=known, progress=progress)
+    found = backup(
+        plc, single_pass=single_pass, any_header=any_header, known=known, data=data, progress=progress
+    )
     return BackupResult(found, clock() - began)
 
 
@@ -52,6 +56,7 @@ def backup(
     single_pass: bool = False,
     any_header: bool = False,
     known: KnownPages | None = None,
+    data: bool = False,
     progress: Progress = ignore,
 ) -> Backup:
     """Read a PLC's program into a backup. ``save_backup`` writes it to a file.
@@ -61,6 +66,7 @@ def backup(
         single_pass: read once, and compare with nothing.
         any_header: keep an image with an invalid header; it is marked.
         known: what is on file of this PLC: a page that is as on file needs no second reading.
+        data: read the PLC's data too, when the program is read: see ``read_data``.
         progress: called for each page.
 
     Raises:
@@ -81,7 +87,8 @@ def backup(
     else:
         reading = read_proven(plc, known, progress, after_first=check)
         check(reading)
-    return backup_of(plc, reading)
+    found = backup_of(plc, reading)
+    return replace(found, data=read_data(plc, reading.status, progress)) if data else found
 
 
 def backup_of(plc: Plc, reading: ProgramReading) -> Backup:

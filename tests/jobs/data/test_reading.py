@@ -1,0 +1,121 @@
+"""The data of a PLC, read: all of it, twice where that proves something, whatever the line does."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from fatektool.errors import DataError
+from fatektool.jobs.data.reading import read_data
+from fatektool.program.data.uses import CONSTANT, SYMBOLS, Use, use_of, uses_of
+from fatektool.simulator.refusal import Refusal, RefusalCode
+from tests.jobs.data.filled import Filled, disabled_of, fill_at_random, filled, values_of
+from tests.plant import with_holes
+from tests.rigs import Seen, simulated
+
+if TYPE_CHECKING:
+    from fatektool.program.data.part import DataPart
+    from fatektool.simulator.elements import SymbolKind
+
+
+def data_of(plant: Filled) -> DataPart:
+    return read_data(plant.plc, plant.plc.detailed_status())
+
+
+@pytest.mark.parametrize("seed", range(1, 6))
+def test_everything_is_read(seed: int) -> None:
+    plant = filled(seed)
+    found = data_of(plant)
+    assert found.values == values_of(plant.device)
+    assert found.disabled == disabled_of(plant.device)
+    assert (found.moving, found.errors, found.running) == ((), {}, False)
+
+
+def test_a_whole_model_with_file_registers() -> None:
+    made = simulated(model="fbs-20mc")
+    fill_at_random(made.device, 3)
+    found = read_data(made.plc, made.plc.detailed_status())
+    assert found.values == values_of(made.device)
+    assert found.counts == {"R": 8072, "D": 4096, "F": 8192, "RT": 256, "RC": 256, "M": 2002, "S": 1000}
+
+
+@pytest.mark.parametrize("fault", ["drop=0.1", "flip=0.1", "late=0.1", "duplicate=0.1"])
+def test_a_bad_line_makes_no_wrong_value(fault: str) -> None:
+    plant = filled(2, faults=(fault,), retries=20)
+    found = data_of(plant)
+    assert found.values == values_of(plant.device)
+    assert found.disabled == disabled_of(plant.device)
+
+
+def test_a_value_that_changes_is_marked() -> None:
+    plant = filled()
+    counted = plant.device.memory.registers["R"]
+
+    def count(seen: Seen) -> None:
+        if seen.command in {"46", "48"}:
+            counted[7] = (counted[7] + 1) % 0x10000
+
+    plant.tap.before = count
+    assert data_of(plant).moving == ("R7",)
+
+
+def test_what_is_disabled_must_hold_still() -> None:
+    plant = filled()
+    flags = plant.device.memory.disabled["M"]
+
+    def force(seen: Seen) -> None:
+        if seen.command == "43":
+            flags[seen.number % len(flags)] ^= 1
+
+    plant.tap.before = force
+    with pytest.raises(DataError, match="disabled changed while it was read"):
+        data_of(plant)
+
+
+def test_what_is_refused_has_no_value_and_a_reason() -> None:
+    made = with_holes({10, 11, 12, 500})
+    found = read_data(made.plc, made.plc.detailed_status())
+    missing = [at for at, value in enumerate(found.values["R"]) if value is None]
+    assert missing == [10, 11, 12, 500]
+    assert list(found.errors) == ["R10", "R11", "R12", "R500"]
+    assert all("illegal address" in text for text in found.errors.values())
+
+
+def test_a_plc_without_file_registers_is_asked_once() -> None:
+    made = simulated()
+    asked = []
+    check = made.device.memory.check
+
+    def counting(kind: SymbolKind, address: int, count: int) -> int:
+        if kind.area == "F":
+            asked.append(address)
+            raise Refusal(RefusalCode.ILLEGAL_ADDRESS)
+        return check(kind, address, count)
+
+    made.device.memory.check = counting  # type: ignore[method-assign]  # to listen
+    assert read_data(made.plc, made.plc.detailed_status()).counts["F"] == 0
+    assert asked == [0]
+
+
+def test_uses_cover_each_element_once() -> None:
+    for symbol in SYMBOLS:
+        for count in (0, 1, 900, 1913, 3841, 4059, 5000):
+            spans = [*uses_of(symbol, count)]
+            covered = [at for span in spans for at in range(span.first, span.last + 1)]
+            assert covered == [*range(count)]
+            assert all(use_of(symbol, at) is span.use for span in spans for at in (span.first, span.last))
+
+
+def test_uses_as_the_manual_says() -> None:
+    expected = {
+        ("R", 2999): Use.KEPT, ("R", 3000): Use.WORKING, ("R", 3840): Use.INPUT, ("R", 3904): Use.OUTPUT,
+        ("R", 4146): Use.SETTING, ("R", 4128): Use.CLOCK, ("R", 4058): Use.STATUS, ("R", 5000): Use.KEPT,
+        ("D", 3999): Use.KEPT, ("D", 4043): Use.SETTING, ("D", 4045): Use.STATUS, ("M", 799): Use.WORKING,
+        ("M", 800): Use.KEPT, ("M", 1400): Use.WORKING, ("M", 1912): Use.STATUS, ("M", 1959): Use.SETTING,
+        ("M", 1964): Use.STATUS, ("S", 499): Use.WORKING, ("S", 500): Use.KEPT, ("RC", 0): Use.KEPT,
+        ("RC", 140): Use.WORKING, ("RT", 0): Use.WORKING, ("F", 0): Use.KEPT,
+    }  # fmt: skip
+    assert {where: use_of(*where) for where in expected} == expected
+    assert Use.KEPT in CONSTANT
+    assert Use.WORKING not in CONSTANT
