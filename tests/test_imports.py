@@ -22,6 +22,7 @@ RANKS = {
     "counts": 0,
     "errors": 0,
     "protocols": 0,
+    "system": 0,
     "version": 0,
     "checks": 1,
     "files": 1,

@@ -44,8 +44,8 @@ class Alarms:
     """
 
     prometheus: Path | None
-    on_change: tuple[str, ...] | None
-    on_failure: tuple[str, ...] | None
+    on_change: str | tuple[str, ...] | None
+    on_failure: str | tuple[str, ...] | None
     lost: FatektoolError | None = field(init=False, default=None)
     _outcomes: list[tuple[str, Outcome]] = field(init=False, default_factory=list)
     _hangs: int = field(init=False, default=0)
@@ -87,7 +87,9 @@ class Alarms:
                 f"remove {name} if it is no longer used, or let one command write both"
             )
 
-    def _run(self, command: tuple[str, ...], event: str, job: str, outcome: Outcome, voice: Voice) -> None:
+    def _run(
+        self, command: str | tuple[str, ...], event: str, job: str, outcome: Outcome, voice: Voice
+    ) -> None:
         if self._hangs >= _MOST_HANGS:
             voice.warn(f"{outcome.name}: {command[0]} is not run: it timed out {_MOST_HANGS} times")
             return

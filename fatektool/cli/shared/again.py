@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -11,6 +10,7 @@ from click.core import ParameterSource
 
 from fatektool.cli.shared.options import FilePath, standard
 from fatektool.files.atomic import STANDARD
+from fatektool.system.shell import command_line
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -40,7 +40,7 @@ def command_again(connection: Connection, *added: str, anywhere: bool = False) -
         whole = anywhere and parameter is not None and isinstance(parameter.type, FilePath)
         text = _whole(value) if whole else value
         words += [f"{prefix}{text}"] if prefix.endswith("=") or not prefix else [prefix, text]
-    return shlex.join(words)
+    return command_line(words)
 
 
 def _parsed(

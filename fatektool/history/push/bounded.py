@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import os
-import signal
 import subprocess
-import sys
 import time
 from tempfile import TemporaryFile
 from typing import TYPE_CHECKING, Final, NamedTuple
+
+from fatektool.system.process_group import ProcessGroup
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 _LOOK_S: Final = 1.0
 _CLEAN_UP_S: Final = 5.0
-_OWN_GROUP: Final = getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0) | getattr(
-    subprocess, "CREATE_NO_WINDOW", 0
-)
 
 
 class Ended(NamedTuple):
@@ -48,14 +45,11 @@ def run_bounded(command: Sequence[str], environment: Mapping[str, str], silence_
         OSError: it cannot be started.
     """
     with TemporaryFile() as out, TemporaryFile() as err:
-        process = subprocess.Popen(  # noqa: S603  # git, and no shell
-            command, stdin=subprocess.DEVNULL, stdout=out, stderr=err, env=dict(environment),
-            start_new_session=True, creationflags=_OWN_GROUP,
-        )  # fmt: skip
+        group = ProcessGroup(command, stdout=out, stderr=err, env=dict(environment))  # git, and no shell
         try:
-            code = _wait(process, (out.fileno(), err.fileno()), silence_s)
+            code = _wait(group.process, (out.fileno(), err.fileno()), silence_s)
         finally:
-            _end(process)
+            _end(group)
         texts = []
         for file in (out, err):
             file.seek(0)
@@ -77,20 +71,12 @@ def _wait(process: subprocess.Popen[bytes], files: tuple[int, int], silence_s: f
                 return None
 
 
-def _end(process: subprocess.Popen[bytes]) -> None:
+def _end(group: ProcessGroup) -> None:
     """End it and its children: by SIGTERM first, so that git deletes its lock files."""
-    if process.poll() is not None:
-        return
-    _signal(process, signal.SIGTERM)
-    try:
-        process.wait(_CLEAN_UP_S)
-    except subprocess.TimeoutExpired:
-        _signal(process, getattr(signal, "SIGKILL", signal.SIGTERM))
-        process.wait()
-
-
-def _signal(process: subprocess.Popen[bytes], number: signal.Signals) -> None:
-    if sys.platform == "win32":
-        process.kill()
-    else:
-        os.killpg(process.pid, number)
+    if group.process.poll() is None:
+        group.terminate()
+        try:
+            group.process.wait(_CLEAN_UP_S)
+        except subprocess.TimeoutExpired:
+            group.kill()
+    group.close()

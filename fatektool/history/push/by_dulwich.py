@@ -24,6 +24,7 @@ from fatektool.errors import FatektoolError
 from fatektool.history.push.outcome import Pushed, diverged, failed, without_secrets
 from fatektool.history.push.place import URL, folder_of, is_bare, let_head_name
 from fatektool.history.repository import release
+from fatektool.system.shell import quoted
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -183,7 +184,7 @@ def _local(place: str, folder: Path) -> str:
     """A folder with a bare repository without hooks. A work tree would not be updated by the push."""
     if not folder.is_dir():
         raise failed(
-            place, "the folder does not exist", f"create the folder: git init --bare {shlex.quote(place)}"
+            place, "the folder does not exist", f"create the folder: git init --bare {quoted(place)}"
         )
     with Repo(str(folder)) as found:  # raises if it is not a repository
         if not is_bare(found):

@@ -16,7 +16,6 @@ from __future__ import annotations
 
 import os
 import re
-import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -25,6 +24,7 @@ from dulwich.refs import Ref
 from fatektool.history.push.bounded import Ended, run_bounded
 from fatektool.history.push.outcome import Pushed, diverged, failed, without_secrets
 from fatektool.history.push.place import folder_of, let_head_name
+from fatektool.system.shell import command_line, quoted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -97,7 +97,7 @@ class _Push:
                 raise failed(
                     place,
                     "the folder does not exist",
-                    f"create the folder: git init --bare {shlex.quote(place)}",
+                    f"create the folder: git init --bare {quoted(place)}",
                 )
         if tip is None:
             return Pushed(shown, None, sent=False)
@@ -157,7 +157,7 @@ class _Push:
 
     def _by_hand(self, remote: str) -> str:
         words = ["git", "-C", str(self.folder), "push", without_secrets(remote), self.branch]
-        return f"for git's own messages run: {shlex.join(words)}"
+        return f"for git's own messages run: {command_line(words)}"
 
 
 def _results(out: str) -> Iterator[tuple[str, str]]:

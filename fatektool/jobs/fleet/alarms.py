@@ -6,15 +6,14 @@ may take half a minute; then it is ended, with all that it started.
 
 from __future__ import annotations
 
-import contextlib
 import os
-import shlex
-import signal
 import subprocess
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import UsageError
+from fatektool.system.process_group import ProcessGroup
+from fatektool.system.shell import program_of, split_command
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -56,26 +55,28 @@ class Event:
         }
 
 
-def parse_command(text: str, option: str) -> tuple[str, ...]:
-    """Take a command apart, as a shell would without doing anything else.
+def parse_command(text: str, option: str) -> str | tuple[str, ...]:
+    r"""Split a command as the system's shell does, and nothing else of a shell.
 
     Args:
-        text: ``mail-alarm --to 'the team'``.
+        text: ``mail-alarm --to 'the team'``, on Windows ``C:\tools\alarm.exe "the team"``.
         option: its option, for messages.
 
     Raises:
-        UsageError: a quotation without an end, or nothing.
+        UsageError: a quotation mark is missing, or there is no command.
     """
     try:
-        words = tuple(shlex.split(text))
+        command = split_command(text)
     except ValueError as error:
         raise UsageError(f"{option} {text!r}: {error}") from error
-    if not words or not words[0]:
+    if not program_of(command):
         raise UsageError(f"{option}: expected a command, got {text!r}")
-    return words
+    return command
 
 
-def run_command(command: Sequence[str], event: Event, *, time_limit_s: float = TIME_LIMIT_S) -> str | None:
+def run_command(
+    command: str | Sequence[str], event: Event, *, time_limit_s: float = TIME_LIMIT_S
+) -> str | None:
     """Start a command and wait for its end.
 
     What it prints goes to standard error, as standard output is for data.
@@ -83,31 +84,19 @@ def run_command(command: Sequence[str], event: Event, *, time_limit_s: float = T
     Returns:
         What went wrong, in words; None if nothing did.
     """
+    program = program_of(command)
     try:
-        process = subprocess.Popen(  # noqa: S603  # the user's own command; what is not his is in its environment
-            command,
-            stdin=subprocess.DEVNULL,
-            stdout=2,
-            env=os.environ | event.environment(),
-            start_new_session=os.name != "nt",
-        )
+        group = ProcessGroup(command, stdout=2, env=os.environ | event.environment())
     except (OSError, ValueError) as error:
-        return f"cannot start {command[0]}: {getattr(error, 'strerror', None) or error}"
+        return f"cannot start {program}: {getattr(error, 'strerror', None) or error}"
     try:
-        code = process.wait(time_limit_s)
+        code = group.process.wait(time_limit_s)
     except subprocess.TimeoutExpired:
-        _end(process)
-        return f"{command[0]} did not end within {time_limit_s:g} s, and was stopped"
+        group.kill()
+        return f"{program} did not end within {time_limit_s:g} s, and was stopped"
     except BaseException:  # an interrupt
-        _end(process)
+        group.kill()
         raise
-    return f"{command[0]} ended with exit code {code}" if code else None
-
-
-def _end(process: subprocess.Popen[bytes]) -> None:
-    with contextlib.suppress(OSError):
-        if os.name == "nt":
-            process.kill()
-        else:
-            os.killpg(process.pid, signal.SIGKILL)
-    process.wait()
+    finally:
+        group.close()
+    return f"{program} ended with exit code {code}" if code else None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from typing import TYPE_CHECKING
 
 import click
@@ -29,6 +28,7 @@ from fatektool.jobs.plcports.tables import parse_start, plan_write
 from fatektool.jobs.plcports.toml import MAX_TOML, load_table
 from fatektool.plcports.tables import kind_of, place_faults
 from fatektool.plcports.versions import needs_of_table
+from fatektool.system.shell import quoted
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -92,7 +92,7 @@ def _require_good(file: Path, table: Table, faults: Sequence[Fault], *, force: b
     more = f" and {len(faults) - 1} more" if len(faults) > 1 else ""
     raise DataError(
         f"{file}: the table has faults: {place}{first.reason}{more}: nothing was written",
-        hint=f"'fatektool link table check {shlex.quote(str(file))}' shows all; --force writes it as it is",
+        hint=f"'fatektool link table check {quoted(str(file))}' shows all; --force writes it as it is",
         file=str(file),
         faults=fault_documents(kind_of(table), faults),
     )

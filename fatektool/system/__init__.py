@@ -1,0 +1,1 @@
+"""What differs between operating systems: shells, and processes that end together."""
