@@ -122,8 +122,7 @@ class Reading:
         self._on_news()
 
     def _read(self) -> Round:
-        if self._stop.is_set():  # there may be no pause between two rounds
-            raise _Stopped
+        self._end_if_stopped()
         return self._monitor.read()
 
     def _failed(self, error: LineError) -> None:
@@ -131,6 +130,7 @@ class Reading:
 
         Raises:
             LineError: it was the first.
+            _Stopped: this was the last.
         """
         if self.last is None:
             raise error
@@ -139,6 +139,12 @@ class Reading:
         self.lost = error
         self._ended.clear()
         self._on_news()
+        self._end_if_stopped()
+
+    def _end_if_stopped(self) -> None:
+        """There may be no pause between two rounds, and none of them may come to its reading."""
+        if self._stop.is_set():
+            raise _Stopped
 
     def _sleep(self, seconds: float) -> None:
         if self._wait(seconds):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+from contextlib import ExitStack
 from typing import TYPE_CHECKING
 
 import pytest
@@ -160,6 +161,17 @@ def test_it_ends_where_there_is_no_pause_between_two_rounds() -> None:
         shown.until("rounds/s")
         shown.type("q")
         assert shown.end() == 0
+
+
+def test_it_ends_while_no_connection_can_be_made() -> None:
+    with ExitStack() as stack:
+        door = stack.enter_context(press())
+        with terminal(door, "--timeout", "0.05", "--retries", "0", "--interval", "0") as shown:
+            shown.until("rounds/s")
+            stack.close()
+            shown.until("LINE LOST since")
+            shown.type("q")
+            assert shown.end() == 0
 
 
 def test_no_plc_from_the_beginning() -> None:
