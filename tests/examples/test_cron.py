@@ -71,4 +71,4 @@ def test_by_cron(gateway: Gateway, blocks: Blocks) -> None:
     mail = (left / "mail").read_text()
     assert mail.count("Subject:") == 1  # of the backup; the other job's words go to Prometheus alone
     assert "To: maintenance@example.com" in mail
-    assert re.search(r"^gone +FAILED 3 +tcp://127\.0\.0\.1:1: cannot connect", mail, re.MULTILINE)
+    assert re.search(r"^gone +FAILED +no valid answer: tcp://127\.0\.0\.1:1: cannot", mail, re.MULTILINE)

@@ -165,7 +165,7 @@ def alarm_options(*, changes: bool, place_first: bool = True) -> Callable[[F], F
         @click.option(
             "--on-failure",
             metavar="CMD",
-            help="Run CMD for each PLC that is not ok; FATEK_NAME, FATEK_MESSAGE … are in its environment.",
+            help="Run CMD for each PLC that failed or differs; FATEK_NAME, FATEK_MESSAGE … are set.",
         )
         @wraps(function)
         def with_alarms(

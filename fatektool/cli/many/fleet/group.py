@@ -23,5 +23,6 @@ def fleet_command() -> None:
     """Run a command for every PLC of the inventory, or for those of --select.
 
     PLCs on one line (one serial port, one gateway) are asked one after the other, several lines at the same
-    time. Exit 0 if all are ok, 1 if some are not. --news prints only those that are not ok or have changed.
+    time. Exit 0 if all are done, 1 if some failed or differ. --news prints only those, and those that
+    have changed.
     """

@@ -12,6 +12,7 @@ import click
 from fatektool.cli import Interrupted
 from fatektool.cli.many.documents import FleetRun, fleet_document
 from fatektool.cli.many.fleet.view import View
+from fatektool.cli.many.fleet.words import summary_words
 from fatektool.cli.many.outcome import JobResult, Outcome, failure
 from fatektool.cli.shared.connection import Connection
 from fatektool.cli.shared.inventory_file import complete_names, inventory_option, open_inventory
@@ -110,7 +111,7 @@ def news_option(function: F) -> F:
         is_flag=True,
         expose_value=False,
         callback=keep,
-        help="Print only PLCs that are not ok or have changed.",
+        help="Print only PLCs that failed, differ or have changed.",
     )(function)
 
 
@@ -194,27 +195,16 @@ def opened(entry: PlcEntry, turn: Turn[JobResult], voice: Voice, *needs: Command
 
 
 def ended(job: str, document: dict[str, Any], voice: Voice, alarms: Alarms, *, interrupted: bool) -> int:
-    """Print document and summary; give the exit code: 0 if all are ok, 1 if some are not."""
+    """Print document and summary; give the exit code: 0 if all are done, 1 if some failed or differ."""
     voice.show(document, ())
-    summary = document["summary"]
-    slowest = document["slowest"][:1]
-    words = [f"{job}: {summary['ok']} of {summary['total']} ok"]
-    if summary["failed"]:
-        words.append(f"{summary['failed']} not ok")
-    if summary["changed"]:
-        words.append(f"{summary['changed']} changed")
-    if summary["not_done"]:
-        words.append(f"{summary['not_done']} not done")
-    words.append(f"{document['duration_s']:.1f} s")
-    words += [f"slowest {each['name']} {each['duration_s']:.1f} s" for each in slowest]
-    voice.say(", ".join(words))
+    voice.say(", ".join(summary_words(job, document)))
     from fatektool.cli import failed
 
     if interrupted:
         return failed(Interrupted("interrupted"), as_json=False)
     if alarms.lost is not None:
         return failed(alarms.lost, as_json=False)
-    return 1 if summary["failed"] else 0
+    return 1 if document["summary"]["failed"] else 0
 
 
 def _outcome(entry: PlcEntry, turn: Turn[JobResult]) -> Outcome:

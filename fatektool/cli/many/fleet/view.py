@@ -1,6 +1,6 @@
 """A line for each PLC as it ends; on a terminal a table of the running ones below.
 
-With ``--news`` only PLCs that are not ok or have changed have a line: cron mails nothing else.
+With ``--news`` only PLCs that failed, differ or have changed have a line: cron mails nothing else.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
+from fatektool.cli.many.fleet.words import line_of
 from fatektool.cli.shared.output import shows_progress
 
 if TYPE_CHECKING:
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
 
 _LONGEST_NAME: Final = 24
 _REFRESH_S: Final = 0.2
-_WORDS: Final = {0: "ok", 1: "differs"}
 
 
 class View:
@@ -36,7 +36,7 @@ class View:
         names: of all PLCs.
         voice: prints.
         lines: False for no lines.
-        news: no line for a PLC that is ok and unchanged.
+        news: no line for a PLC whose job is done and that is unchanged.
     """
 
     def __init__(self, job: str, names: list[str], voice: Voice, *, lines: bool, news: bool) -> None:
@@ -73,8 +73,7 @@ class View:
         self._not_well += result.exit_code != 0
         if not self._lines or (self._news and result.exit_code == 0 and not result.changed):
             return
-        state = _WORDS.get(result.exit_code, f"FAILED {result.exit_code}")
-        text = f"{outcome.name:<{self._width}}  {state:<8}  {' '.join(result.words.split())}"
+        text = line_of(self._job, f"{outcome.name:<{self._width}}", result)
         if self.live and sys.stdout.isatty():
             self._rich.console.print(text, markup=False, highlight=False, soft_wrap=True)
         else:
@@ -96,7 +95,7 @@ class View:
         rows = [self._row(turn, now) for turn in running[:space]]
         if len(running) > space:
             rows.append(f"… {len(running) - space} more")
-        not_well = f", {self._not_well} not ok" if self._not_well else ""
+        not_well = f", {self._not_well} failed or differ" if self._not_well else ""
         rows.append(f"{self._job}: {self._ended} of {self._total} ended{not_well}")
         return Text("\n".join(rows), no_wrap=True, overflow="ellipsis")
 

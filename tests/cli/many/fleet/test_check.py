@@ -314,14 +314,14 @@ def test_fleet_check(cli: Cli, plant: Hall) -> None:
     done = cli("fleet", "check")
     assert done.code == 0
     assert re.fullmatch(
-        r"FATEK OK - 3 of 3 PLCs ok \| ok=3 warning=0 critical=0 unknown=0 duration=[\d.]+s;;;0\n", done.out
+        r"FATEK OK - 3 of 3 PLCs OK \| ok=3 warning=0 critical=0 unknown=0 duration=[\d.]+s;;;0\n", done.out
     )
     plant.pump.battery_low = True
     plant.oven.watchdog = True
     done = cli("fleet", "check")
     assert done.code == 2
     first, *rest = done.out.splitlines()
-    assert first.startswith("FATEK CRITICAL - 1 of 3 PLCs ok; 1 CRITICAL: oven; 1 WARNING: pump | ok=1 ")
+    assert first.startswith("FATEK CRITICAL - 1 of 3 PLCs OK; 1 CRITICAL: oven; 1 WARNING: pump | ok=1 ")
     assert [line.partition(",")[0] for line in rest] == [
         "CRITICAL - oven: watchdog TIMED OUT",
         "WARNING - pump: battery LOW",

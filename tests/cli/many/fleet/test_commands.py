@@ -39,11 +39,11 @@ def test_status(cli: Cli, plant: Hall) -> None:
     done = cli("fleet", "status")
     assert done.code == 0
     assert sorted(done.out.splitlines()) == [
-        "oven   ok        STOP",
-        "press  ok        RUN",
-        "pump   ok        STOP, battery LOW",
+        "oven   done      STOP",
+        "press  done      RUN",
+        "pump   done      STOP, battery LOW",
     ]
-    assert re.fullmatch(r"status: 3 of 3 ok, \d\.\d s, slowest \w+ \d\.\d s\n", done.err)
+    assert re.fullmatch(r"status: 3 of 3 done, \d\.\d s, slowest \w+ \d\.\d s\n", done.err)
 
 
 def test_a_document_has_each_plc_s_own(cli: Cli, plant: Hall) -> None:
@@ -104,7 +104,7 @@ def test_backup(cli: Cli, plant: Hall) -> None:
     done = cli("fleet", "backup", "--dir", "backups")
     assert done.code == 0
     assert sorted(done.out.splitlines()) == [
-        f"{name:<5}  ok        first backup, FB30, 400 words" for name in ("oven", "press", "pump")
+        f"{name:<5}  done      first backup, FB30, 400 words" for name in ("oven", "press", "pump")
     ]
     assert load_backup(Path("backups/press.json")).program == OLD
     assert load_backup(Path("backups/pump.json")).program == NEW
@@ -128,7 +128,7 @@ def test_a_backup_that_lost_its_program_is_a_failure(cli: Cli, plant: Hall, byte
     done = cli("fleet", "backup", "--dir", "backups")
     assert done.code == 1
     line = next(line for line in done.out.splitlines() if line.startswith("press"))
-    assert f"FAILED 5  the program is empty: every byte of its ladder is {byte:02X}" in line
+    assert f"FAILED    invalid data: the program is empty: every byte of its ladder is {byte:02X}" in line
     assert Path("backups/press.json").read_bytes() == before
 
 
@@ -155,7 +155,7 @@ def test_what_lies_in_the_place(cli: Cli, plant: Hall) -> None:
     Path("backups/oven.json").write_text("my notes")
     Path("backups/pump.json").touch()
     done = cli("fleet", "backup", "--dir", "backups")
-    assert states(done.out) == {"press": "ok", "oven": "FAILED", "pump": "ok"}
+    assert states(done.out) == {"press": "done", "oven": "FAILED", "pump": "done"}
     assert "oven.json is not a backup and is not replaced; name another folder" in done.out
     assert Path("backups/oven.json").read_text() == "my notes"
     assert load_backup(Path("backups/press.json")).program == OLD
@@ -180,7 +180,7 @@ def test_verify(cli: Cli, plant: Hall) -> None:
     plant.write(**{name: REFERENCE.format(name) for name in ("press", "oven", "pump")})
     done = cli("fleet", "verify")
     assert done.code == 1
-    assert states(done.out) == {"press": "ok", "oven": "differs", "pump": "FAILED"}
+    assert states(done.out) == {"press": "same", "oven": "differs", "pump": "FAILED"}
     assert "DIFFERS from oven.json: 2 words in 2 pages" in done.out
     document = cli("fleet", "verify", "--json").document("fleet")
     assert document["summary"] == {"total": 3, "ok": 1, "failed": 2, "changed": 1, "not_done": 0}

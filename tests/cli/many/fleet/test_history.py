@@ -23,8 +23,8 @@ def test_a_commit_for_each_change(cli: Cli, plant: Hall) -> None:
     plant.pump.pages = [*changed(NEW, 3).pages]
     done = cli("fleet", "backup", "--history", "hist", "--dir", "backups")
     assert done.code == 0
-    assert "pump   ok        CHANGED, FB30, 400 words" in done.out
-    assert "press  ok        unchanged, FB30, 400 words" in done.out  # though the file is new
+    assert "pump   done      CHANGED, FB30, 400 words" in done.out
+    assert "press  done      unchanged, FB30, 400 words" in done.out  # though the file is new
     assert Path("backups/pump.json").exists()
     entries = cli("history", "log", "--history", "hist", "--json").document("history-log")["changes"]
     assert len(entries) == 4

@@ -58,7 +58,7 @@ def test_an_interrupt_tells_what_is_done(number: signal.Signals, *, as_json: boo
     assert command.returncode == 130
     assert err.splitlines()[-1] == "fatektool: interrupted"
     assert "Traceback" not in err
-    assert err.splitlines()[-2].startswith("backup: 1 of 3 ok, 2 not done")
+    assert err.splitlines()[-2].startswith("backup: 1 of 3 done, 2 not done")
     if as_json:
         document = json.loads(out)
         check(document, "fleet")
@@ -69,7 +69,7 @@ def test_an_interrupt_tells_what_is_done(number: signal.Signals, *, as_json: boo
             "behind": 130,
         }
     else:
-        assert out == "quick   ok        first backup, FB30, 400 words\n"
+        assert out == "quick   done      first backup, FB30, 400 words\n"
     assert [path.name for path in Path("backups").iterdir()] == ["quick.json"]
     assert load_backup(Path("backups/quick.json")).program == OLD
 
@@ -90,11 +90,11 @@ def test_the_live_table(columns: int, lines: int) -> None:
         words = ["fleet", "backup", "--dir", "backups", "--single-pass"]
         with Terminal(*words, columns=columns, lines=lines) as terminal:
             terminal.read_until("reading")
-            terminal.read_until("quick   ok")
+            terminal.read_until("quick   done")
             terminal.type("\x03")
             assert terminal.end() == 130
             assert "backup: 1 of 3 ended" in terminal.text or columns < 30
-            assert "backup: 1 of 3 ok" in terminal.text.replace("\n", " ")
+            assert "backup: 1 of 3 done" in terminal.text.replace("\n", " ")
 
 
 def test_nothing_of_it_where_nobody_wants_it() -> None:
@@ -104,4 +104,4 @@ def test_nothing_of_it_where_nobody_wants_it() -> None:
         with Terminal("fleet", "status", "--news", "-q", columns=300) as terminal:
             assert terminal.end() == 1
             (line,) = terminal.raw.splitlines()
-            assert line.startswith("nobody  FAILED 3  tcp://127.0.0.1:1: cannot connect")
+            assert line.startswith("nobody  FAILED    no valid answer: tcp://127.0.0.1:1: cannot connect")

@@ -135,7 +135,7 @@ def test_crontab(plant: Hall, place: Path) -> None:
     plant.press.program_commands = False
     done = shell(words_of(jobs[0], place))
     assert done.returncode == 1
-    assert done.stdout.startswith("press  FAILED 4  ")
+    assert done.stdout.startswith("press  FAILED    refused: ")
     assert {path.name for path in place.glob("*.prom")} == {"fatek-backup.prom", "fatek-check.prom"}
 
 
