@@ -23,6 +23,7 @@ from tests.ladder.vectors import PRINTED, READ
 from tests.rows import each
 
 if TYPE_CHECKING:
+    from fatektool.ladder.networks import Network
     from tests.ladder.vectors import Vector
 
 SERVO = "FUN 140 HSPSO Ps:1 SR:R1300 WR:R1500"
@@ -119,9 +120,8 @@ def test_words_that_are_not_known_say_so(words: tuple[int, ...], reason: str, nu
     assert circuit_of(given_) == NoCircuit(reason, number)
 
 
-@each("vector", [*PRINTED, *READ], ids=lambda vector: vector.text)
-def test_every_vector_is_part_of_a_circuit(vector: Vector) -> None:
-    """Each instruction that is known, in a network that has what it needs."""
+def network_with(vector: Vector) -> Network:
+    """An instruction in a network that has what it needs."""
     before = {
         Role.AND: ["ORG X0"],
         Role.OR: ["ORG X0"],
@@ -144,6 +144,13 @@ def test_every_vector_is_part_of_a_circuit(vector: Vector) -> None:
     words = [word for text in first for word in WORDS[text]]
     words += [*vector.words, *(word for text in behind for word in WORDS[text])]
     (given_,) = Code.of(words).networks
+    return given_
+
+
+@each("vector", [*PRINTED, *READ], ids=lambda vector: vector.text)
+def test_every_vector_is_part_of_a_circuit(vector: Vector) -> None:
+    """Each instruction that is known."""
+    given_ = network_with(vector)
     found = circuit_of(given_)
     assert isinstance(found, Circuit), found
     assert instructions_of(found) == given_.instructions

@@ -95,13 +95,14 @@ def test_a_plan_does_what_its_circuit_does(circuit: Circuit, states: int) -> Non
     def state(leaf: Leaf) -> bool:
         return leaf.is_wire or (bool(states >> leaf.number & 1) and not leaf.is_gap)
 
-    assert by_nets(circuit, plan_of(circuit), state) == by_circuit(circuit, state)
+    reached, _ = carried_by_nets(circuit, plan_of(circuit), state)
+    assert reached == by_circuit(circuit, state)
 
 
-def by_nets(
+def carried_by_nets(
     circuit: Circuit, plan: Plan, state: Callable[[Leaf], bool]
-) -> list[tuple[int, tuple[bool, ...]]]:
-    """What each coil and function gets."""
+) -> tuple[list[tuple[int, tuple[bool, ...]]], dict[int, bool]]:
+    """What each coil and function gets, and what goes on behind each leaf."""
     cells = {cell.leaf.number: cell for cell in plan.cells}
     boxes = {box.leaf.number: box for box in plan.boxes}
     carried: dict[int, bool] = {}
@@ -128,7 +129,7 @@ def by_nets(
             else:
                 power = power and state(leaf)
             carried[leaf.number] = power
-    return found
+    return found, carried
 
 
 @given(CIRCUITS, st.integers(40, 300))

@@ -12,10 +12,11 @@ from hypothesis import strategies as st
 from fatektool.ladder.circuit.nodes import Circuit
 from fatektool.ladder.circuit.reading import circuit_of
 from fatektool.ladder.circuit.writing import instructions_of
+from fatektool.ladder.networks import Code
 from fatektool.ladder.power.flow import power_of
 from fatektool.ladder.power.logic import both, either, opposite
 from fatektool.ladder.power.values import Shown, number_of, shown_of
-from tests.ladder.circuits import circuits, coded, network
+from tests.ladder.circuits import circuits, coded, network, words_of
 from tests.ladder.power.networks import Interpreter
 
 if TYPE_CHECKING:
@@ -131,6 +132,29 @@ def reached(text: str, **states: int) -> tuple[bool | None, ...]:
 )
 def test_a_network(text: str, elements: dict[str, int], expected: tuple[bool | None, ...]) -> None:
     assert reached(text, **elements) == expected
+
+
+@pytest.mark.parametrize(
+    ("code", "sign", "holds"),
+    [
+        (0x21, "=", (False, True, False)),
+        (0x22, ">", (False, False, True)),
+        (0x23, "<", (True, False, False)),
+        (0x24, "<>", (True, False, True)),
+        (0x25, ">=", (False, True, True)),
+        (0x26, "=<", (True, True, False)),
+    ],
+)
+def test_a_comparison_of_numbers_below_at_and_above(code: int, sign: str, holds: tuple[bool, ...]) -> None:
+    """Signed: what is below 0 is below 7."""
+    words = (*words_of("ORG X0"), 0x7FF6, code << 8, 0x0C0A, 0x0700, *words_of("OUT Y0"))
+    (given_,) = Code.of(words).networks
+    assert f" {sign} " in given_.instructions[1].text
+    found = circuit(given_)
+    for below, holds_ in zip(((0, 0xFFFF), (7,), (8, 0x7FFF)), holds, strict=True):
+        for raw in below:
+            (state,) = [*carried(found, {"X0": 1, "R6": raw}.get).values()][-1]
+            assert state is holds_, (sign, raw)
 
 
 def test_what_is_shown_of_an_instruction() -> None:
