@@ -157,7 +157,10 @@ class _Picture:
             case Look.STEP:
                 self._signs.append(f"M{left} {y - _TALL}H{right}v{2 * _TALL}H{left}z")
         self._inside((left + right) / 2, y, inside)
-        half = max(columns, width_of(sign.name)) * _COLUMN // 2 + 3
+        aside = (
+            (width_of(sign.name) - columns) % 2 * _COLUMN // 2
+        )  # a name of even width is beside the middle
+        half = max(columns, width_of(sign.name)) * _COLUMN // 2 + 3 + aside
         middle = (left + right) // 2
         self._mark(number, middle - half - 9, y - _LINE - _TALL, middle + half, y + _TALL + 3)
 

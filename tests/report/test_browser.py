@@ -46,6 +46,16 @@ MARKS = """JSON.stringify(Object.fromEntries(['added', 'removed'].map(name => {
     const drawn = getComputedStyle(mark.querySelector('rect'))
     return [name, [drawn.stroke, drawn.strokeDasharray, mark.querySelector('text').textContent]]
 })))"""
+COVERED = """JSON.stringify([...document.querySelectorAll('g.added text,g.removed text')].flatMap(sign => {
+    const box = sign.getBoundingClientRect()
+    return [...sign.closest('svg').querySelectorAll('text')]
+        .filter(each => !each.closest('g.added,g.removed'))
+        .filter(each => {
+            const other = each.getBoundingClientRect()
+            return other.left < box.right && box.left < other.right
+                && other.top < box.bottom && box.top < other.bottom
+        }).map(each => each.textContent)
+}))"""
 OUTSIDE = """JSON.stringify([...document.querySelectorAll('svg')].flatMap(image => {
     const box = image.getBoundingClientRect()
     return [...image.querySelectorAll('text,path,rect')].map(each => each.getBoundingClientRect())
@@ -153,6 +163,13 @@ def test_what_was_added_or_removed_is_seen_without_its_colour(page: Page, folder
             "added": [rgb(scheme["good"]), "none", "+"],
             "removed": [rgb(scheme["bad"]), "5px, 3px", "\N{MINUS SIGN}"],
         }
+
+
+def test_a_plus_or_minus_covers_no_name(page: Page, folder: Path) -> None:
+    for width in (390, 1200):
+        page.show(width=width)
+        page.open(folder / "ladder diff.html")
+        assert asked(page, COVERED) == []
 
 
 def test_a_list_opens_without_a_script(page: Page, folder: Path) -> None:
