@@ -494,7 +494,7 @@ local function dissect_facon(tvb, pinfo, tree, context)
   for at = 0, tvb:len() - 1 do
     local byte = tvb(at, 1):uint()
     if byte == 0x02 then
-      if began then add_noise(tvb(began, at - began), tree, context, "a frame broke off and another began")
+      if began then add_noise(tvb(began, at - began), tree, context, "an incomplete frame, then another beginning")
       elseif at > free then add_noise(tvb(free, at - free), tree, context, "noise outside a frame") end
       began, free = at, at
     elseif byte == 0x03 and began then

@@ -193,6 +193,6 @@ def test_a_plc_at_another_speed_is_found(place: Path, cli: Cli) -> None:
 def test_a_speed_that_no_terminal_has(cli: Cli) -> None:
     done = cli("simulate", "--pty", "plc", "--baud", 12345, "--strict-baud")
     assert done.code == 2
-    assert "no 12345 bits a second" in done.err
+    assert "no 12345 bits per second" in done.err
     assert not Path("plc").is_symlink()
     assert cli("simulate", "--pty", "plc", "--strict-baud").code == 2

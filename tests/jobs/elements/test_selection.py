@@ -97,7 +97,7 @@ def test_no_selection(text: str) -> None:
         ("R0-R70000", "element R70000: address out of range: expected 0 to 65535, got 70000"),
         ("R65535:u32", "element DR65535: address out of range: expected 0 to 65534, got 65535"),
         ("WM9984:f32", "element DWM9984: address out of range: expected 0 to 9968, got 9984"),
-        ("WM4", "element WM4: expected an address that is a multiple of 8, got 4; WM0 holds M4"),
+        ("WM4", "element WM4: expected an address that is a multiple of 8, got 4; WM0 contains M4"),
         (
             "R0:float",
             "'R0:float': unknown type 'float': expected one of bool, u16, i16, u32, i32, f32, bcd, hex",
