@@ -21,7 +21,7 @@ _LARGEST_GAP: Final = 1_000_000
 _DEEPEST: Final = 50
 
 
-class Block(NamedTuple):
+class AlignedBlock(NamedTuple):
     """A stretch of both: ``a[a_first:a_end]`` and ``b[b_first:b_end]``, which are equal or not."""
 
     equal: bool
@@ -41,49 +41,49 @@ class _Gap(NamedTuple):
     depth: int = 0
 
 
-def align(a: Sequence[Hashable], b: Sequence[Hashable]) -> list[Block]:
+def align(a: Sequence[Hashable], b: Sequence[Hashable]) -> list[AlignedBlock]:
     """Lay two sequences side by side; the blocks in order are both, and no two neighbours are of a kind."""
-    found: list[Block] = []
+    found: list[AlignedBlock] = []
     for block in _lay(a, b, _Gap(0, len(a), 0, len(b))):
         if block.a_first == block.a_end and block.b_first == block.b_end:
             continue
         if found and found[-1].equal == block.equal:
             last = found.pop()
-            found.append(Block(block.equal, last.a_first, block.a_end, last.b_first, block.b_end))
+            found.append(AlignedBlock(block.equal, last.a_first, block.a_end, last.b_first, block.b_end))
         else:
             found.append(block)
     return found
 
 
-def _lay(a: Sequence[Hashable], b: Sequence[Hashable], gap: _Gap) -> Iterator[Block]:
+def _lay(a: Sequence[Hashable], b: Sequence[Hashable], gap: _Gap) -> Iterator[AlignedBlock]:
     i, m, j, n, depth = gap
     head = 0
     while i + head < m and j + head < n and a[i + head] == b[j + head]:
         head += 1
-    yield Block(True, i, i + head, j, j + head)  # noqa: FBT003  # a value as the others
+    yield AlignedBlock(True, i, i + head, j, j + head)  # noqa: FBT003  # a value as the others
     i, j = i + head, j + head
     tail = 0
     while i < m - tail and j < n - tail and a[m - tail - 1] == b[n - tail - 1]:
         tail += 1
     yield from _middle(a, b, _Gap(i, m - tail, j, n - tail, depth))
-    yield Block(True, m - tail, m, n - tail, n)  # noqa: FBT003
+    yield AlignedBlock(True, m - tail, m, n - tail, n)  # noqa: FBT003
 
 
-def _middle(a: Sequence[Hashable], b: Sequence[Hashable], gap: _Gap) -> Iterator[Block]:
+def _middle(a: Sequence[Hashable], b: Sequence[Hashable], gap: _Gap) -> Iterator[AlignedBlock]:
     i, m, j, n, depth = gap
     anchors = _anchors(a[i:m], b[j:n]) if i < m and j < n and depth < _DEEPEST else []
     if anchors:
         here, there = i, j
         for x, y in anchors:
             yield from _lay(a, b, _Gap(here, i + x, there, j + y, depth + 1))
-            yield Block(True, i + x, i + x + 1, j + y, j + y + 1)  # noqa: FBT003
+            yield AlignedBlock(True, i + x, i + x + 1, j + y, j + y + 1)  # noqa: FBT003
             here, there = i + x + 1, j + y + 1
         yield from _lay(a, b, _Gap(here, m, there, n, depth + 1))
     elif i < m and j < n and (m - i) * (n - j) <= _LARGEST_GAP:
         for tag, x, x_end, y, y_end in SequenceMatcher(None, a[i:m], b[j:n], autojunk=False).get_opcodes():
-            yield Block(tag == "equal", i + x, i + x_end, j + y, j + y_end)
+            yield AlignedBlock(tag == "equal", i + x, i + x_end, j + y, j + y_end)
     else:
-        yield Block(False, i, m, j, n)  # noqa: FBT003
+        yield AlignedBlock(False, i, m, j, n)  # noqa: FBT003
 
 
 def _anchors(a: Sequence[Hashable], b: Sequence[Hashable]) -> list[tuple[int, int]]:

@@ -30,7 +30,7 @@ class FindingKind(StrEnum):
     NEVER_WRITTEN = "never-written"
 
 
-class Place(NamedTuple):
+class InstructionPlace(NamedTuple):
     """An instruction: its network's number and its own, both through the whole program."""
 
     network: int
@@ -46,8 +46,8 @@ class Uses:
         writes: instructions that may change it.
     """
 
-    reads: list[Place] = field(default_factory=list)
-    writes: list[Place] = field(default_factory=list)
+    reads: list[InstructionPlace] = field(default_factory=list)
+    writes: list[InstructionPlace] = field(default_factory=list)
 
 
 class XrefFinding(NamedTuple):
@@ -61,11 +61,11 @@ class XrefFinding(NamedTuple):
 
     kind: FindingKind
     element: str
-    where: tuple[Place, ...]
+    where: tuple[InstructionPlace, ...]
 
 
 class _Access(NamedTuple):
-    place: Place
+    place: InstructionPlace
     element: str
     spans: tuple[Span, ...]
     reads: bool
@@ -141,7 +141,7 @@ class CrossReference:
         )
 
     def _double_coils(self) -> Iterator[XrefFinding]:
-        coils: dict[str, list[Place]] = defaultdict(list)
+        coils: dict[str, list[InstructionPlace]] = defaultdict(list)
         for access in self._accesses:
             if access.coil:
                 coils[access.element].append(access.place)
@@ -188,7 +188,7 @@ def _indexed_symbols(code: Code) -> set[str]:
 def _accesses(code: Code) -> Iterator[_Access]:
     for network in code.networks:
         for number, _, instruction in network.places:
-            place = Place(network.number, number)
+            place = InstructionPlace(network.number, number)
             coil = instruction.form.text.startswith("OUT ")
             for access in instruction.accesses:
                 yield _Access(place, *access, coil=coil)

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 from fatektool.ladder.grades import Grade
 
 if TYPE_CHECKING:
-    from fatektool.ladder.operands import Part
+    from fatektool.ladder.operands import OperandForm
 
 
 class Shape(Enum):
@@ -53,7 +53,7 @@ class Form:
     text: str
     fixed: tuple[int, ...]
     free: tuple[int, ...]
-    parts: tuple[Part, ...] = ()
+    parts: tuple[OperandForm, ...] = ()
     grade: Grade = Grade.A
     usual: str = "4567"
     pulse: str = ""

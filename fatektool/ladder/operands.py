@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 
-class Kind(Enum):
+class OperandKind(Enum):
     """What an operand's value is."""
 
     REGISTER = auto()  # a byte address, or a constant where the nibble says so
@@ -44,7 +44,7 @@ class Kind(Enum):
     MUTE = auto()  # a word that is not printed
 
 
-class Use(Enum):
+class OperandUse(Enum):
     """What the function does to the operand."""
 
     READ = auto()
@@ -58,21 +58,21 @@ class Use(Enum):
     @property
     def reads(self) -> bool:
         """True if the function's work depends on it."""
-        return self in {Use.READ, Use.CHANGE, Use.READ_ON, Use.CHANGE_ON}
+        return self in {OperandUse.READ, OperandUse.CHANGE, OperandUse.READ_ON, OperandUse.CHANGE_ON}
 
     @property
     def writes(self) -> bool:
         """True if the function writes it."""
-        return self in {Use.WRITE, Use.CHANGE, Use.WRITE_ON, Use.CHANGE_ON}
+        return self in {OperandUse.WRITE, OperandUse.CHANGE, OperandUse.WRITE_ON, OperandUse.CHANGE_ON}
 
     @property
     def goes_on(self) -> bool:
         """True if registers behind the named one belong to it, and it is not known how many."""
-        return self in {Use.READ_ON, Use.WRITE_ON, Use.CHANGE_ON}
+        return self in {OperandUse.READ_ON, OperandUse.WRITE_ON, OperandUse.CHANGE_ON}
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class OperandForm:
     """One operand of a form: a row's statement of what stands in its place.
 
     Attributes:
@@ -83,8 +83,8 @@ class Part:
         registers: how many registers it stands for, 1, 2 or 4.
     """
 
-    kind: Kind = Kind.REGISTER
-    use: Use = Use.READ
+    kind: OperandKind = OperandKind.REGISTER
+    use: OperandUse = OperandUse.READ
     constant: int = 0
     words: int = 1
     registers: int = 1
@@ -103,7 +103,7 @@ class Operand:
         spans: the memory that it stands for; empty where that is not known, or where it is a constant.
     """
 
-    part: Part
+    part: OperandForm
     value: int
     text: str
     grade: Grade = Grade.A
@@ -145,7 +145,7 @@ def words_of(value: int, count: int) -> tuple[int, ...]:
     return tuple(swapped(value >> 16 * place & 0xFFFF) for place in reversed(range(count)))
 
 
-def operand(part: Part, value: int, nibble: int) -> Operand:
+def operand(part: OperandForm, value: int, nibble: int) -> Operand:
     """Name an operand.
 
     Args:
@@ -153,14 +153,14 @@ def operand(part: Part, value: int, nibble: int) -> Operand:
         value: its words with their bytes swapped.
         nibble: the low nibble of the function's word.
     """
-    if part.kind is Kind.BIT:
+    if part.kind is OperandKind.BIT:
         return _bit(part, value)
-    if part.kind is Kind.TEXT:
+    if part.kind is OperandKind.TEXT:
         text = characters(value)
         return Operand(part, value, text, Grade.C if "\\" in text else Grade.A)
-    if part.kind in {Kind.MUTE, Kind.CODE}:
+    if part.kind in {OperandKind.MUTE, OperandKind.CODE}:
         return Operand(part, value, str(value))
-    if part.kind is Kind.NUMBER and value < _FIRST_ADDRESS:
+    if part.kind is OperandKind.NUMBER and value < _FIRST_ADDRESS:
         return Operand(part, value, str(value), Grade.B)
     if nibble & part.constant:
         return _constant(part, value)
@@ -185,27 +185,27 @@ def character(code: int) -> str:
     return chr(code) if 0x20 <= code < 0x7F else f"\\x{code:02X}"
 
 
-def _constant(part: Part, value: int) -> Operand:
-    if part.kind is Kind.FLOAT:
+def _constant(part: OperandForm, value: int) -> Operand:
+    if part.kind is OperandKind.FLOAT:
         return Operand(part, value, _float(value), Grade.B)
     sure = value < 1 << 15
     return Operand(part, value, number(value, 16 * part.words), Grade.A if sure else Grade.B)
 
 
-def _register(part: Part, value: int) -> Operand:
+def _register(part: OperandForm, value: int) -> Operand:
     if value > 0xFFFF:
         return Operand(part, value, f"@{value:08X}", Grade.C)
     return _named(part, value, register_name(value), (register_span(value, part.registers),))
 
 
-def _bit(part: Part, value: int) -> Operand:
+def _bit(part: OperandForm, value: int) -> Operand:
     name = bit_name(value) if value <= 0xFFF else None
     if name is None:
         return Operand(part, value, f"@{value:04X}", Grade.C)
     return _named(part, value, name, (bit_span(value),))
 
 
-def _named(part: Part, value: int, name: Name, spans: tuple[Span, ...]) -> Operand:
+def _named(part: OperandForm, value: int, name: Name, spans: tuple[Span, ...]) -> Operand:
     if name.element is None:
         return Operand(part, value, name.text, name.grade)
     if name.element[0] in "TC":  # a timer is its contact and its value

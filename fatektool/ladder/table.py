@@ -14,33 +14,33 @@ from typing import Final
 
 from fatektool.ladder.forms import Form, Shape
 from fatektool.ladder.grades import Grade
-from fatektool.ladder.operands import Kind, Part, Use
+from fatektool.ladder.operands import OperandForm, OperandKind, OperandUse
 
 A, B, C = Grade.A, Grade.B, Grade.C
 
-FIRST: Final = Part(constant=1)
-SECOND: Final = Part(constant=2)
-FIRST_LONG: Final = Part(constant=1, words=2, registers=2)
-SECOND_LONG: Final = Part(constant=2, words=2, registers=2)
-FIRST_FLOAT: Final = Part(Kind.FLOAT, constant=1, words=2, registers=2)
-SECOND_FLOAT: Final = Part(Kind.FLOAT, constant=2, words=2, registers=2)
-FLOAT_IN_ONE: Final = Part(registers=2)
-SOURCE: Final = Part()
-TARGET: Final = Part(use=Use.WRITE)
-TWO_TARGETS: Final = Part(use=Use.WRITE, registers=2)
-FOUR_TARGETS: Final = Part(use=Use.WRITE, registers=4)
-CHANGED: Final = Part(use=Use.CHANGE)
-TABLE_IN: Final = Part(use=Use.READ_ON)
-TABLE_OUT: Final = Part(use=Use.WRITE_ON)
-TABLE: Final = Part(use=Use.CHANGE_ON)
-NUMBER: Final = Part(Kind.NUMBER)
-FIRST_NUMBER: Final = Part(Kind.NUMBER, constant=1)
-CODE: Final = Part(Kind.CODE, Use.NOTHING)
-BIT_IN: Final = Part(Kind.BIT)
-BIT_OUT: Final = Part(Kind.BIT, Use.WRITE)
-BIT_CHANGED: Final = Part(Kind.BIT, Use.CHANGE)
-MUTE: Final = Part(Kind.MUTE, Use.NOTHING)
-TEXT: Final = Part(Kind.TEXT, Use.NOTHING)
+FIRST: Final = OperandForm(constant=1)
+SECOND: Final = OperandForm(constant=2)
+FIRST_LONG: Final = OperandForm(constant=1, words=2, registers=2)
+SECOND_LONG: Final = OperandForm(constant=2, words=2, registers=2)
+FIRST_FLOAT: Final = OperandForm(OperandKind.FLOAT, constant=1, words=2, registers=2)
+SECOND_FLOAT: Final = OperandForm(OperandKind.FLOAT, constant=2, words=2, registers=2)
+FLOAT_IN_ONE: Final = OperandForm(registers=2)
+SOURCE: Final = OperandForm()
+TARGET: Final = OperandForm(use=OperandUse.WRITE)
+TWO_TARGETS: Final = OperandForm(use=OperandUse.WRITE, registers=2)
+FOUR_TARGETS: Final = OperandForm(use=OperandUse.WRITE, registers=4)
+CHANGED: Final = OperandForm(use=OperandUse.CHANGE)
+TABLE_IN: Final = OperandForm(use=OperandUse.READ_ON)
+TABLE_OUT: Final = OperandForm(use=OperandUse.WRITE_ON)
+TABLE: Final = OperandForm(use=OperandUse.CHANGE_ON)
+NUMBER: Final = OperandForm(OperandKind.NUMBER)
+FIRST_NUMBER: Final = OperandForm(OperandKind.NUMBER, constant=1)
+CODE: Final = OperandForm(OperandKind.CODE, OperandUse.NOTHING)
+BIT_IN: Final = OperandForm(OperandKind.BIT)
+BIT_OUT: Final = OperandForm(OperandKind.BIT, OperandUse.WRITE)
+BIT_CHANGED: Final = OperandForm(OperandKind.BIT, OperandUse.CHANGE)
+MUTE: Final = OperandForm(OperandKind.MUTE, OperandUse.NOTHING)
+TEXT: Final = OperandForm(OperandKind.TEXT, OperandUse.NOTHING)
 
 EITHER: Final = "4567"
 PULSED: Final = "0123"
@@ -105,7 +105,7 @@ _MARKS: Final = (
 def _function(
     code: int,
     shown: str,
-    *parts: Part,
+    *parts: OperandForm,
     grade: Grade = A,
     usual: str = EITHER,
     pulse: str = "",
@@ -296,7 +296,7 @@ def _extended() -> list[Form]:
     ]
 
 
-def _two_words(second: int, shown: str, *parts: Part, grade: Grade, begins: bool = False) -> Form:
+def _two_words(second: int, shown: str, *parts: OperandForm, grade: Grade, begins: bool = False) -> Form:
     pulse = PULSED if "{P}" in shown else ""
     return Form(
         Shape.FUNCTION, shown, (0x7FF0, second), (0x000F, 0), parts, grade, EITHER, pulse, begins=begins

@@ -62,7 +62,7 @@ def value_of(element: Element, parts: Mapping[Atom, int]) -> int:
 
 
 @dataclass(slots=True)
-class Line:
+class AtomLine:
     """Wanted elements of one symbol, in order, each as the span of its atoms.
 
     A span within another is left out, so that first and last addresses both ascend.
@@ -113,7 +113,7 @@ class Line:
         return self.lasts[self.ends[bisect_right(self.ends, place)] - 1] + self.stride - self.firsts[place]
 
 
-def lines_of(elements: Iterable[Element | Stretch], limits: Mapping[str, int] | None) -> list[Line]:
+def lines_of(elements: Iterable[Element | Stretch], limits: Mapping[str, int] | None) -> list[AtomLine]:
     """The lines on which the elements lie, one behind the other.
 
     Args:
@@ -132,7 +132,7 @@ def lines_of(elements: Iterable[Element | Stretch], limits: Mapping[str, int] | 
         else:
             symbol, first, last = _span(each)
             spans.setdefault((symbol, first % KINDS[symbol].stride), set()).add((first, last))
-    lines: list[Line] = []
+    lines: list[AtomLine] = []
     for key in sorted(spans.keys() | stretches.keys()):
         symbol = key[0]
         kind = KINDS[symbol]
@@ -146,7 +146,7 @@ def lines_of(elements: Iterable[Element | Stretch], limits: Mapping[str, int] | 
             within = limits is not None and firsts[begin] <= limit
             past = lasts[end - 1] + kind.stride
             lines.append(
-                Line(
+                AtomLine(
                     symbol,
                     kind.stride,
                     firsts[begin:end],

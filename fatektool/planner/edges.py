@@ -37,7 +37,7 @@ from fatektool.protocol.elements import KINDS, Element
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from fatektool.planner.atoms import Line
+    from fatektool.planner.atoms import AtomLine
     from fatektool.planner.costs import Costs
 
 STEP: Final = 8
@@ -46,7 +46,7 @@ STEP: Final = 8
 class Edges:
     """The edges from each place of each line, the places of all lines numbered through as nodes."""
 
-    def __init__(self, lines: list[Line], costs: Costs) -> None:
+    def __init__(self, lines: list[AtomLine], costs: Costs) -> None:
         self._lines = lines
         self._starts = [line.start for line in lines]
         self._costs = costs
@@ -73,16 +73,16 @@ class Edges:
             yield from self._discrete_runs(line, place)
             yield from self._discrete_items(line, place)
 
-    def _run(self, line: Line, to: int, symbol: str, first: int, count: int) -> Edge:
+    def _run(self, line: AtomLine, to: int, symbol: str, first: int, count: int) -> Edge:
         return Edge(line.start + to, self._costs.run(symbol, count), 0, Run(symbol, first, count))
 
-    def _item(self, line: Line, to: int, symbol: str, address: int) -> Edge:
+    def _item(self, line: AtomLine, to: int, symbol: str, address: int) -> Edge:
         item = Element(symbol, address)
         return Edge(line.start + to, self._costs.mixed_item(symbol), item.kind.words, [item])
 
     # --- registers --------------------------------------------------------------------------------
 
-    def _register_runs(self, line: Line, place: int) -> Iterator[Edge]:
+    def _register_runs(self, line: AtomLine, place: int) -> Iterator[Edge]:
         kind = KINDS[line.symbol]
         first = line.firsts[place]
         to = line.place_past(first + self._costs.most(line.symbol) * kind.stride, place)
@@ -96,7 +96,7 @@ class Edges:
         for end in ends:
             yield self._run(line, end, line.symbol, first, (line.lasts[end - 1] - first) // kind.stride + 1)
 
-    def _register_items(self, line: Line, place: int) -> Iterator[Edge]:
+    def _register_items(self, line: AtomLine, place: int) -> Iterator[Edge]:
         kind = KINDS[line.symbol]
         first, last = line.firsts[place], line.lasts[place]
         # A full run of single registers costs no more than whatever else begins here: none of its words is
@@ -150,7 +150,7 @@ class Edges:
             if beyond > to:  # what a run reaches that begins 8 earlier, and ends where the PLC does
                 yield self._run(line, beyond, symbol, first - STEP, space + 1)
 
-    def _discrete_runs(self, line: Line, place: int) -> Iterator[Edge]:
+    def _discrete_runs(self, line: AtomLine, place: int) -> Iterator[Edge]:
         symbol, packed = line.symbol, f"W{line.symbol}"
         value, word = self._costs.run_value(symbol), self._costs.run_value(packed)
         ahead = self._costs.run_base(packed) - self._costs.run_base(symbol)
@@ -171,7 +171,7 @@ class Edges:
             if begin + words * WORD > line.bound or value * (last + 1 - first) < ahead + word * words:
                 yield self._run(line, to, symbol, first, last + 1 - first)
 
-    def _discrete_items(self, line: Line, place: int) -> Iterator[Edge]:
+    def _discrete_items(self, line: AtomLine, place: int) -> Iterator[Edge]:
         symbol, first = line.symbol, line.firsts[place]
         begin = first // STEP * STEP
         reached = place
@@ -192,7 +192,7 @@ class Edges:
 
     # --- discretes, where eight of them take a byte in any case -----------------------------------------
 
-    def _bit_runs(self, line: Line, place: int) -> Iterator[Edge]:
+    def _bit_runs(self, line: AtomLine, place: int) -> Iterator[Edge]:
         first, most = line.firsts[place], self._costs.most(line.symbol)
         limit = line.place_past(first + most, place)
         if limit == len(line):
@@ -213,7 +213,7 @@ class Edges:
 
     # --- discretes, and nothing but those wanted ------------------------------------------------------
 
-    def _exact_runs(self, line: Line, place: int) -> Iterator[Edge]:
+    def _exact_runs(self, line: AtomLine, place: int) -> Iterator[Edge]:
         first = line.firsts[place]
         most = self._costs.most(line.symbol)
         limit = line.place_past(first + most, place)
@@ -232,7 +232,7 @@ class Edges:
                 yield self._run(line, to, f"W{line.symbol}", first, words)
                 return
 
-    def _exact_items(self, line: Line, place: int) -> Iterator[Edge]:
+    def _exact_items(self, line: AtomLine, place: int) -> Iterator[Edge]:
         symbol, first = line.symbol, line.firsts[place]
         if first % STEP == 0:
             for prefix, bits in (("W", WORD), ("DW", 2 * WORD)):

@@ -22,7 +22,7 @@ from fatektool.protocol.elements import Element, Stretch
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
 
-    from fatektool.planner.atoms import Line
+    from fatektool.planner.atoms import AtomLine
     from fatektool.planner.paths import Edge
     from fatektool.protocol.codec import Codec
 
@@ -82,7 +82,7 @@ def neighbourhoods(
     return [found[number] for number in sorted(found)]
 
 
-def _plan(lines: list[Line], costs: Costs) -> Iterator[Request[Any]]:
+def _plan(lines: list[AtomLine], costs: Costs) -> Iterator[Request[Any]]:
     edges = Edges(lines, costs)
     edges_of = cache(lambda node: list(edges.of(node)))
     search = Search(edges.end, edges_of, costs.mixed_base, max(1, costs.mixed_words))
@@ -104,7 +104,7 @@ def _plan(lines: list[Line], costs: Costs) -> Iterator[Request[Any]]:
         yield ReadMixed(tuple(items))
 
 
-def _certain(lines: list[Line], edges_of: Callable[[int], list[Edge]]) -> Iterator[Run]:
+def _certain(lines: list[AtomLine], edges_of: Callable[[int], list[Edge]]) -> Iterator[Run]:
     """The runs of every path: from the beginning of a line on, up to the first place with a choice."""
     for line in lines:
         node = line.start

@@ -18,7 +18,7 @@ from fatektool.protocol.elements import Element
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from fatektool.planner.atoms import Line
+    from fatektool.planner.atoms import AtomLine
     from fatektool.protocol.codec import Codec
 
 
@@ -46,7 +46,7 @@ def plan_writes(
     return requests
 
 
-def _plan(lines: list[Line], parts: dict[Atom, int], costs: Costs) -> list[Request[None]]:
+def _plan(lines: list[AtomLine], parts: dict[Atom, int], costs: Costs) -> list[Request[None]]:
     edges = Edges(lines, costs)
     requests: list[Request[None]] = []
     mixed: list[Element] = []

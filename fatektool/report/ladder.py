@@ -36,14 +36,14 @@ _TALL: Final = 7
 _PEN: Final = Pen(Letters())
 
 
-class Mark(StrEnum):
+class DiffMark(StrEnum):
     """What became of an instruction between two programs."""
 
     ADDED = "added"
     REMOVED = "removed"
 
 
-_SIGNS: Final = {Mark.ADDED: "+", Mark.REMOVED: "\N{MINUS SIGN}"}
+_SIGNS: Final = {DiffMark.ADDED: "+", DiffMark.REMOVED: "\N{MINUS SIGN}"}
 
 
 def ladder(
@@ -51,7 +51,7 @@ def ladder(
     comments: Mapping[str, str],
     name: str,
     columns: int = WIDE,
-    marks: Mapping[int, Mark] | None = None,
+    marks: Mapping[int, DiffMark] | None = None,
 ) -> Html | None:
     """A network drawn; None if it cannot be.
 
@@ -89,7 +89,7 @@ class _Picture:
         marks: the instructions that were added or removed.
     """
 
-    def __init__(self, marks: Mapping[int, Mark]) -> None:
+    def __init__(self, marks: Mapping[int, DiffMark]) -> None:
         self._marks = marks
         self._top = 0
         self._widest = 0

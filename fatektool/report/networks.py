@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Any, Final
 
-from fatektool.report.ladder import HALF, Mark, ladder, not_drawn
+from fatektool.report.ladder import HALF, DiffMark, ladder, not_drawn
 from fatektool.report.markup import Html, table, tag
 from fatektool.report.page import note, section
 
@@ -53,14 +53,14 @@ def changed_networks(
 
 def _both(change: NetworkChange, comments: Mapping[str, str], sides: tuple[str, str]) -> Html:
     """A network before and after, side by side."""
-    removed = dict.fromkeys(change.removed, Mark.REMOVED)
-    added = dict.fromkeys(change.added, Mark.ADDED)
+    removed = dict.fromkeys(change.removed, DiffMark.REMOVED)
+    added = dict.fromkeys(change.added, DiffMark.ADDED)
     pairs = ((change.a, sides[0], removed, "a"), (change.b, sides[1], added, "b"))
     return tag("div", *(_side(*pair, comments) for pair in pairs), class_="sides")
 
 
 def _side(
-    network: Network | None, side: str, marks: Mapping[int, Mark], key: str, comments: Mapping[str, str]
+    network: Network | None, side: str, marks: Mapping[int, DiffMark], key: str, comments: Mapping[str, str]
 ) -> Html:
     if network is None:
         return tag("div", tag("h3", f"Not in {side}"), class_="side")

@@ -82,7 +82,7 @@ class Gap:
 
 
 @dataclass(frozen=True, slots=True)
-class Round:
+class KeptRound:
     """A round that is kept for the charts; ``values`` is empty for one of which nothing was read."""
 
     time_s: float
@@ -120,9 +120,9 @@ class Rounds:
         self.last_time: str | None = None
         self.mode_changes = 0
         self._most_points, self._most_cells = most_points, most_cells
-        self._kept: list[Round] = []
+        self._kept: list[KeptRound] = []
         self._cells = 0
-        self._newest: Round | None = None
+        self._newest: KeptRound | None = None
         self._open: dict[str | None, Gap] = {}
 
     def add(self, document: Mapping[str, Any]) -> None:
@@ -153,7 +153,7 @@ class Rounds:
         self._keep(time, {})
         self.lost += 1
 
-    def kept(self) -> list[Round]:
+    def kept(self) -> list[KeptRound]:
         """The rounds of which points are kept, in the order of their times, the newest among them.
 
         A document's time is to the second. Rounds of one second are put evenly into it.
@@ -167,7 +167,7 @@ class Rounds:
     def _keep(self, time: str, values: Mapping[str, Any]) -> None:
         self.first_time = self.first_time or time
         self.last_time = time
-        self._newest = Round(seconds(time), values)
+        self._newest = KeptRound(seconds(time), values)
         if (self.count + self.lost) % self.stride == 0:
             self._kept.append(self._newest)
             self._cells += len(values)
@@ -206,7 +206,7 @@ def seconds(time: str) -> float:
     return datetime.fromisoformat(time).timestamp()
 
 
-def _spread(rounds: list[Round]) -> Iterable[Round]:
+def _spread(rounds: list[KeptRound]) -> Iterable[KeptRound]:
     start = 0
     while start < len(rounds):
         time_s = rounds[start].time_s
@@ -214,5 +214,5 @@ def _spread(rounds: list[Round]) -> Iterable[Round]:
         while end < len(rounds) and rounds[end].time_s == time_s:
             end += 1
         for number in range(start, end):
-            yield Round(time_s + (number - start) / (end - start), rounds[number].values)
+            yield KeptRound(time_s + (number - start) / (end - start), rounds[number].values)
         start = end

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 from fatektool.counts import counted
 from fatektool.report.markup import DASH, Html, figure, plain, table, tag, when
 from fatektool.report.page import Report, Verdict, chart, note, render, section
-from fatektool.report.rounds import MOST_GAPS, Round, Rounds, Track, is_number
+from fatektool.report.rounds import MOST_GAPS, KeptRound, Rounds, Track, is_number
 from fatektool.report.scale import stamp
 from fatektool.report.snapshot import MOST_ROWS, bounded, mode_of
 from fatektool.report.svg import line, timing
@@ -30,7 +30,7 @@ _IN_ONE_DIAGRAM: Final = 16
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class SeriesSource:
     """Of which PLC a series is.
 
     Attributes:
@@ -48,7 +48,9 @@ class Place:
     time: str
 
 
-def series_report(rounds: Rounds, place: Place, *, ended: str | None = None, left_out: str = "") -> str:
+def series_report(
+    rounds: Rounds, place: SeriesSource, *, ended: str | None = None, left_out: str = ""
+) -> str:
     """A series of rounds.
 
     Args:
@@ -148,7 +150,7 @@ def _overview(rounds: Rounds, keys: Sequence[str]) -> Html:
     return table("All values, all rounds", head, rows, numeric=range(3, 10))
 
 
-def _points(key: str, kept: Iterable[Round], fits: Callable[[Any], bool]) -> list[Point]:
+def _points(key: str, kept: Iterable[KeptRound], fits: Callable[[Any], bool]) -> list[Point]:
     """A key's values over time; None where one is missing, nothing at all if none fits."""
     found: list[tuple[float, Any]] = [(each.time_s, each.values.get(key)) for each in kept]
     points: list[Point] = [(time_s, float(value) if fits(value) else None) for time_s, value in found]
@@ -212,7 +214,7 @@ def _changes(caption: str, rows: Sequence[tuple[str, Sequence[Point]]]) -> Html:
     return _changes_table(caption, found)
 
 
-def _texts(keys: Iterable[str], kept: Sequence[Round]) -> list[Html]:
+def _texts(keys: Iterable[str], kept: Sequence[KeptRound]) -> list[Html]:
     found = []
     for key in keys:
         before = None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fatektool.ladder.cross_reference import CrossReference, Place
+from fatektool.ladder.cross_reference import CrossReference, InstructionPlace
 from fatektool.ladder.networks import Code
 
 CODE = [
@@ -27,18 +27,21 @@ def odd(words: list[int]) -> list[tuple[str, str]]:
 
 def test_uses() -> None:
     found = reference(CODE)
-    assert found.uses("X0").reads == [Place(0, 0)]
-    assert found.uses("Y0").writes == [Place(0, 2), Place(3, 10)]
-    assert (found.uses("T30").reads, found.uses("T30").writes) == ([Place(4, 11)], [Place(3, 8)])
+    assert found.uses("X0").reads == [InstructionPlace(0, 0)]
+    assert found.uses("Y0").writes == [InstructionPlace(0, 2), InstructionPlace(3, 10)]
+    assert (found.uses("T30").reads, found.uses("T30").writes) == (
+        [InstructionPlace(4, 11)],
+        [InstructionPlace(3, 8)],
+    )
 
 
 def test_memory_counts_not_the_name() -> None:
     found = reference(CODE)
-    assert found.uses("R11").writes == [Place(1, 4)]  # through R10 of 32 bits
-    assert found.uses("M5").writes == [Place(2, 6)]  # through WM0
-    assert found.uses("WM0").reads == [Place(0, 1), Place(1, 3)]  # M0
+    assert found.uses("R11").writes == [InstructionPlace(1, 4)]  # through R10 of 32 bits
+    assert found.uses("M5").writes == [InstructionPlace(2, 6)]  # through WM0
+    assert found.uses("WM0").reads == [InstructionPlace(0, 1), InstructionPlace(1, 3)]  # M0
     assert found.uses("M16").writes == []
-    assert found.uses("DR10").reads == [Place(2, 6)]
+    assert found.uses("DR10").reads == [InstructionPlace(2, 6)]
 
 
 def test_what_is_odd() -> None:

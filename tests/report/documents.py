@@ -13,7 +13,7 @@ from fatektool.project.comparison import compare_programs
 from fatektool.report.loopback import loopback_report
 from fatektool.report.program import diff_report, verify_report
 from fatektool.report.rounds import Rounds
-from fatektool.report.series import Place, series_report
+from fatektool.report.series import SeriesSource, series_report
 from fatektool.report.snapshot import snapshot_report
 from tests.cli.running import check
 from tests.program.samples import changed, program
@@ -176,8 +176,8 @@ def series(count: int = 120, *, step_s: int = 1, most_points: int = 2000) -> Rou
     return rounds
 
 
-def place(schema: str = "fatektool.watch/1", target: str = "/dev/ttyUSB0") -> Place:
-    return Place(target, 1, "facon", schema, TIME)
+def place(schema: str = "fatektool.watch/1", target: str = "/dev/ttyUSB0") -> SeriesSource:
+    return SeriesSource(target, 1, "facon", schema, TIME)
 
 
 SMALL, LARGE, OTHER = program(400), program(13_184), program(500, seed=2)

@@ -10,7 +10,7 @@ from fatektool.ladder.circuit.writing import instructions_of
 from fatektool.ladder.drawing.layout import plan_of
 from fatektool.ladder.drawing.signs import frame_of, sign_of
 from fatektool.ladder.networks import Code
-from fatektool.report.ladder import Mark, ladder
+from fatektool.report.ladder import DiffMark, ladder
 from tests.ladder.circuits import coded, words_of
 from tests.ladder.drawing.test_layout import CIRCUITS
 from tests.report.ladders import COMMENTS, comparison, ladder_diff, listing
@@ -93,7 +93,7 @@ def test_the_numbers_that_are_marked_are_those_that_differ() -> None:
 def test_every_instruction_that_shows_is_drawn(circuit: Circuit) -> None:
     (network,) = coded(instructions_of(circuit))
     numbers = [number for number, _, _ in network.places]
-    drawing = ladder(network, COMMENTS, "x", marks=dict.fromkeys(numbers, Mark.ADDED))
+    drawing = ladder(network, COMMENTS, "x", marks=dict.fromkeys(numbers, DiffMark.ADDED))
     assert drawing is not None
     plan, shown = plan_of(circuit), parse(f"<!doctype html>\n<html>{drawing}</html>\n")
     if not list(shown.every("svg")):

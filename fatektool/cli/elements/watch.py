@@ -15,9 +15,9 @@ from fatektool.cli.elements.values import SELECTION, shown
 from fatektool.cli.programs.program_files import comments_for, comments_options
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.modbus_map import modbus_map_option
-from fatektool.cli.shared.options import Seconds
+from fatektool.cli.shared.options import SecondsType
 from fatektool.cli.shared.report import report_option, watch_report
-from fatektool.cli.shared.rounds import Pace, failed_in_line, paced_rounds
+from fatektool.cli.shared.rounds import RoundTimes, failed_in_line, paced_rounds
 from fatektool.cli.shared.streams import reader_is_gone
 from fatektool.errors import FatektoolError, PlcError
 from fatektool.files.times import utc
@@ -54,7 +54,7 @@ _AROUND: Final = 4  # title, header, what is left out, and the line of the curso
 @spec_options
 @click.option(
     "--interval",
-    type=Seconds(0, 86400),
+    type=SecondsType(0, 86400),
     metavar="S",
     help="Interval of the rounds; by default interval_s of --spec, else 1.",
 )
@@ -132,7 +132,7 @@ def _rounds(
     def read() -> Snapshot:
         return take_snapshot(plc, items)
 
-    for snapshot in paced_rounds(plc, read, Pace(interval_s, count), failed=failed, voice=voice):
+    for snapshot in paced_rounds(plc, read, RoundTimes(interval_s, count), failed=failed, voice=voice):
         if kept is not None:
             kept.add(snapshot.document())
         yield snapshot

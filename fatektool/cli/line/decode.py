@@ -11,7 +11,7 @@ import click
 
 from fatektool.cli.line.documents.frames import decode_document
 from fatektool.cli.line.frame_view import field_lines
-from fatektool.cli.shared.options import OneOf, voice_options
+from fatektool.cli.shared.options import ChoiceType, voice_options
 from fatektool.cli.shared.pairs import together
 from fatektool.errors import DataError, UsageError
 from fatektool.files.atomic import read_bounded
@@ -36,7 +36,7 @@ _ROLES = {"request": FrameRole.REQUEST, "answer": FrameRole.ANSWER}
 @click.argument("frames", nargs=-1, required=True, metavar="HEX…|FILE")
 @click.option(
     "--protocol",
-    type=OneOf(PROTOCOLS),
+    type=ChoiceType(PROTOCOLS),
     help="Protocol of the frames.  [default: that of the trace, else facon]",
 )
 @click.option("--as", "role", type=click.Choice(list(_ROLES)), help="What frames given as hex are.")

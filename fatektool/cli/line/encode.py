@@ -8,7 +8,7 @@ import click
 
 from fatektool.cli.line.documents.frames import encode_document
 from fatektool.cli.line.frame_view import characters, field_lines
-from fatektool.cli.shared.options import OneOf, voice_options
+from fatektool.cli.shared.options import ChoiceType, voice_options
 from fatektool.errors import UsageError
 from fatektool.jobs.command_operands import parse_hex
 from fatektool.jobs.command_words import MODBUS_FUNCTIONS, parse_code, parse_command
@@ -31,7 +31,7 @@ _TCP = "modbus-tcp"
 )
 @click.argument("command")
 @click.argument("operands", nargs=-1, metavar="[OPERANDS]…")
-@click.option("--protocol", type=OneOf(PROTOCOLS), default=DEFAULT, show_default=True)
+@click.option("--protocol", type=ChoiceType(PROTOCOLS), default=DEFAULT, show_default=True)
 @click.option("-s", "--station", type=click.IntRange(0, 255), default=1, show_default=True)
 @click.option(
     "--as",

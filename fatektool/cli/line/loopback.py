@@ -11,7 +11,7 @@ from fatektool.cli import INTERRUPTED
 from fatektool.cli.line.documents.linetest import loopback_document
 from fatektool.cli.line.loopback_view import LiveFigures, lines
 from fatektool.cli.shared.connection_options import connection_options
-from fatektool.cli.shared.options import Seconds, Several
+from fatektool.cli.shared.options import SecondsType, Several
 from fatektool.cli.shared.pairs import apart, together
 from fatektool.cli.shared.report import report_option, write_report
 from fatektool.jobs.linetest.diagnosis import diagnose
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 @click.option("--count", type=click.IntRange(1), help=f"Number of exchanges.  [default: {DEFAULT_COUNT}]")
 @click.option(
     "--duration",
-    type=Seconds(0, inf, above=True),
+    type=SecondsType(0, inf, above=True),
     metavar="S",
     help="Seconds, instead of a number of exchanges.",
 )
@@ -56,7 +56,7 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--interval",
-    type=Seconds(0, 86400),
+    type=SecondsType(0, 86400),
     default=0.0,
     metavar="S",
     help="Time from request to request; 0 for no pause.",

@@ -12,7 +12,7 @@ from fatektool.cli import INTERRUPTED
 from fatektool.cli.line.documents.linetest import scan_document, station_document
 from fatektool.cli.line.network import look_for_modules, network_option
 from fatektool.cli.shared.connection_options import connection_options
-from fatektool.cli.shared.options import OneOf, Several, type_of
+from fatektool.cli.shared.options import ChoiceType, Several, type_of
 from fatektool.cli.shared.pairs import apart, together
 from fatektool.errors import UsageError
 from fatektool.exchange.no_answer import longer_timeout
@@ -93,7 +93,7 @@ class Bauds(Several):
 )
 @click.option(
     "--protocols",
-    type=Several(OneOf(PROTOCOLS)),
+    type=Several(ChoiceType(PROTOCOLS)),
     metavar="P,…",
     help="Protocols to try.  [default: that of --protocol]",
 )

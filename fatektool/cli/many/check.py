@@ -12,7 +12,7 @@ from fatektool.cli.many.outcome import Outcome
 from fatektool.cli.many.plugin import PluginCommand, plugin_line
 from fatektool.cli.many.run_check import check_result, found_document, run_check
 from fatektool.cli.shared.connection_options import connection_options
-from fatektool.cli.shared.options import PATH, Seconds
+from fatektool.cli.shared.options import PATH, SecondsType
 from fatektool.cli.shared.pairs import apart, together
 from fatektool.errors import UsageError
 from fatektool.inventory.values import EXPECTATIONS
@@ -49,7 +49,7 @@ if TYPE_CHECKING:
 @click.option("--max-age", metavar="AGE", help="Maximum age of the backup: 36h, 7d.")
 @click.option(
     "--deadline",
-    type=Seconds(0, 86400, above=True),
+    type=SecondsType(0, 86400, above=True),
     default=600.0,
     show_default=True,
     metavar="S",

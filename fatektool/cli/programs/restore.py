@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 import click
 
 from fatektool.cli.programs.documents import restore_document
-from fatektool.cli.shared.addressee import Addressee, Origin, Pace, spent
+from fatektool.cli.shared.addressee import Addressee, ExchangeTime, Origin, spent
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.image_words import warn_of_image
 from fatektool.cli.shared.options import PATH
 from fatektool.cli.shared.output import Voice, table
-from fatektool.cli.shared.write_back import Offer, Writing
+from fatektool.cli.shared.write_back import Offer, WriteCommand
 from fatektool.cli.shared.write_options import Terms, write_options
 from fatektool.errors import UsageError
 from fatektool.files.atomic import read_bounded
@@ -66,10 +66,10 @@ def restore_command(
     back. A restore that was interrupted is completed by the same command.
     """
     backup = _backup_in(file)
-    writing = Writing(connection, voice, terms, file)
+    writing = WriteCommand(connection, voice, terms, file)
     options = RestoreOptions(stop, run, changed_only, terms.rollback, any_header, single_pass)
     with writing.open(Command.READ_PAGE, Command.WRITE_PAGE) as plc, voice.progress() as bar:
-        pace = Pace(plc)
+        pace = ExchangeTime(plc)
         known = known_before_restore(backup.program, file, writing.folder, plc.link.station)
         plan = plan_restore(plc, backup, options, known=known, progress=bar.update)
         bar.pause()  # while it is shown, stderr is rich's, which older versions say is no terminal
@@ -117,7 +117,11 @@ def _backup_in(file: Path) -> Backup:
 
 
 def _offer(
-    writing: Writing, plan: RestorePlan, here: Addressee, rows: list[tuple[str, object]], pace: Pace
+    writing: WriteCommand,
+    plan: RestorePlan,
+    here: Addressee,
+    rows: list[tuple[str, object]],
+    pace: ExchangeTime,
 ) -> Offer:
     """The restore as it is shown; where the program is in the PLC already, the question is about RUN."""
     if not plan.pages:
@@ -167,7 +171,7 @@ def _nothing_done(plan: RestorePlan) -> RestoreResult:
     )
 
 
-def _lines(plan: RestorePlan, result: RestoreResult, offer: Offer, pace: Pace) -> Iterator[str]:
+def _lines(plan: RestorePlan, result: RestoreResult, offer: Offer, pace: ExchangeTime) -> Iterator[str]:
     facts = dict(offer.rows)
     if plan.comparison.same:
         yield f"same: the PLC's program is the one in {facts['file']} already; nothing was written"

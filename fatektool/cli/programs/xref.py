@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fatektool.cli.shared.output import Voice
-    from fatektool.ladder.cross_reference import Place, XrefFinding
+    from fatektool.ladder.cross_reference import InstructionPlace, XrefFinding
     from fatektool.ladder.networks import Code
 
 _SAID = {
@@ -81,7 +81,7 @@ def _lines(code: Code, elements: Mapping[str, Any], findings: Sequence[XrefFindi
         yield f"{each.element} {_SAID[each.kind]}: {_networks(each.where)}"
 
 
-def _networks(where: Sequence[Place]) -> str:
+def _networks(where: Sequence[InstructionPlace]) -> str:
     numbers = list(dict.fromkeys(place.network for place in where))
     more = len(numbers) - _PLACES_SHOWN
     shown = ", ".join(f"N{number:04}" for number in numbers[:_PLACES_SHOWN])

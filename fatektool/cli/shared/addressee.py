@@ -112,7 +112,7 @@ def _same_line(one: str, other: str) -> bool:
         return one == other
 
 
-class Pace:
+class ExchangeTime:
     """How long an exchange takes on this line, measured while a plan is made."""
 
     def __init__(self, plc: Plc) -> None:

@@ -54,7 +54,7 @@ class _Checked(click.ParamType):  # type: ignore[type-arg]  # a generic in the n
             self.fail(str(error), param, ctx)
 
 
-class WholeNumber(_Checked, click.IntRange):
+class WholeNumberType(_Checked, click.IntRange):
     """A whole number, both ends included."""
 
     def __init__(self, least: int, most: int) -> None:
@@ -62,7 +62,7 @@ class WholeNumber(_Checked, click.IntRange):
         self.check = checks.WholeNumber(least, most)
 
 
-class Seconds(_Checked, click.FloatRange):
+class SecondsType(_Checked, click.FloatRange):
     """A time in seconds, both ends included; ``above`` leaves the lower end out."""
 
     def __init__(self, least: float, most: float, *, above: bool = False) -> None:
@@ -70,7 +70,7 @@ class Seconds(_Checked, click.FloatRange):
         self.check = checks.Seconds(least, most, above=above)
 
 
-class OneOf(_Checked, click.Choice):  # type: ignore[type-arg]  # as above
+class ChoiceType(_Checked, click.Choice):  # type: ignore[type-arg]  # as above
     """One of some words."""
 
     def __init__(self, words: Iterable[str]) -> None:
@@ -78,7 +78,7 @@ class OneOf(_Checked, click.Choice):  # type: ignore[type-arg]  # as above
         super().__init__(self.check.words)
 
 
-class Value(_Checked):
+class CheckedType(_Checked):
     """What a check takes, whatever that is."""
 
     name = "value"
@@ -90,14 +90,14 @@ class Value(_Checked):
 def type_of(check: checks.Check[Any]) -> click.ParamType:  # type: ignore[type-arg]  # as above
     """The type of an option whose value a check takes."""
     if type(check) is checks.WholeNumber:
-        return WholeNumber(check.least, check.most)
+        return WholeNumberType(check.least, check.most)
     if isinstance(check, checks.Seconds):
-        return Seconds(check.least, check.most, above=check.above)
+        return SecondsType(check.least, check.most, above=check.above)
     if isinstance(check, checks.YesNo):
         return click.BOOL
     if type(check) is checks.OneOf:
-        return OneOf(check.words)
-    return Value(check)
+        return ChoiceType(check.words)
+    return CheckedType(check)
 
 
 class Several(click.ParamType):  # type: ignore[type-arg]  # as above

@@ -5,8 +5,8 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from fatektool.cli.shared.addressee import Pace, with_status
-from fatektool.cli.shared.write_back import Offer, Writing
+from fatektool.cli.shared.addressee import ExchangeTime, with_status
+from fatektool.cli.shared.write_back import Offer, WriteCommand
 from fatektool.jobs.snapshots.write_values import SafetySnapshot, ValuesPlan, Written, write_values
 from fatektool.protocol.values import raw_text
 
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 def offer_of(
     plc: Plc,
     plan: ValuesPlan,
-    writing: Writing,
-    pace: Pace,
+    writing: WriteCommand,
+    pace: ExchangeTime,
     *,
     rows: Iterable[tuple[str, object]],
     lines: Iterable[str],

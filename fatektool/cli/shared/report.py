@@ -72,9 +72,9 @@ def watch_report(path: Path | None, plc: Plc, voice: Voice) -> Iterator[Rounds |
         yield None
         return
     from fatektool.report.rounds import Rounds
-    from fatektool.report.series import Place, series_report
+    from fatektool.report.series import SeriesSource, series_report
 
-    place = Place(plc.target, plc.link.station, plc.link.codec.name, "fatektool.watch/1", utc())
+    place = SeriesSource(plc.target, plc.link.station, plc.link.codec.name, "fatektool.watch/1", utc())
     rounds = Rounds()
     try:
         yield rounds
@@ -106,7 +106,7 @@ def write_snapshot_report(path: Path, snapshot: Snapshot, series: Path | None) -
     from fatektool.jobs.snapshots.series import LeftOut, snapshot_series
     from fatektool.jobs.snapshots.snapshot import SCHEMA
     from fatektool.report.rounds import Rounds
-    from fatektool.report.series import Place, series_report
+    from fatektool.report.series import SeriesSource, series_report
     from fatektool.report.snapshot import snapshot_report
 
     rounds, left_out = Rounds(), LeftOut()
@@ -116,7 +116,7 @@ def write_snapshot_report(path: Path, snapshot: Snapshot, series: Path | None) -
     if rounds.count < 2:
         write_report(path, snapshot_report(snapshot.document()))
         return
-    place = Place(snapshot.target, snapshot.station, snapshot.protocol, SCHEMA, snapshot.time)
+    place = SeriesSource(snapshot.target, snapshot.station, snapshot.protocol, SCHEMA, snapshot.time)
     write_report(path, series_report(rounds, place, left_out=_said(left_out, series)))
 
 

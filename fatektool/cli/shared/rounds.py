@@ -24,7 +24,7 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
-class Pace:
+class RoundTimes:
     """How often rounds are read.
 
     Attributes:
@@ -39,7 +39,7 @@ class Pace:
 def paced_rounds(
     plc: Plc,
     read: Callable[[], T],
-    pace: Pace,
+    pace: RoundTimes,
     *,
     failed: Callable[[LineError], object],
     voice: Voice | None,

@@ -1,6 +1,6 @@
 """The one way in which a command writes what it planned: show, ask, write, and say how to go on.
 
-A command begins with ``Writing``, plans the write and makes an ``Offer`` of it. A dry run ends with
+A command begins with ``WriteCommand``, plans the write and makes an ``Offer`` of it. A dry run ends with
 ``Offer.dry_run``; else the job is done within ``Offer.carry_out``, which keeps the record, and asks by
 ``Offer.agree``.
 """
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from fatektool.protocol.commands import Command
 
 
-class Writing:
+class WriteCommand:
     """A command that writes, from its options to the record of what it writes.
 
     Args:
@@ -126,7 +126,7 @@ class Offer:
         again: flags that the command gets when it is to be given again.
     """
 
-    writing: Writing
+    writing: WriteCommand
     here: Addressee
     rows: Sequence[tuple[str, object]]
     lines: Sequence[str]

@@ -29,7 +29,7 @@ from fatektool.jobs.programs.reading import read_program
 from fatektool.jobs.programs.rewrite import Rewrite
 from fatektool.jobs.programs.safety import SafetyBackup, known_before_restore
 from fatektool.jobs.write_back.plan import WritePlan
-from fatektool.jobs.write_back.record import NO_MARK, Mark
+from fatektool.jobs.write_back.record import NO_MARK, WriteMark
 from fatektool.jobs.write_back.write import Agree, agreed, write_back
 from fatektool.program.compare import Comparison, compare_images
 from fatektool.program.image import ranges
@@ -192,7 +192,7 @@ def carry_out(
     agree: Agree = agreed,
     *,
     progress: Progress = ignore,
-    mark: Mark = NO_MARK,
+    mark: WriteMark = NO_MARK,
 ) -> RestoreResult:
     """Do what was planned: safety backup, question, STOP, write, read back, RUN.
 

@@ -12,7 +12,7 @@ from fatektool.jobs.elements.reads import turnaround
 from fatektool.jobs.snapshots.formats import as_json
 from fatektool.jobs.snapshots.snapshot import Snapshot, load_snapshot, raw_of
 from fatektool.jobs.write_back.plan import WritePlan
-from fatektool.jobs.write_back.record import NO_MARK, Mark
+from fatektool.jobs.write_back.record import NO_MARK, WriteMark
 from fatektool.jobs.write_back.safety_copy import save_copy
 from fatektool.jobs.write_back.write import Agree, agreed, write_back
 from fatektool.planner import plan_writes
@@ -124,7 +124,7 @@ def write_values(
     agree: Agree = agreed,
     *,
     rollback: bool = False,
-    mark: Mark = NO_MARK,
+    mark: WriteMark = NO_MARK,
     progress: Progress = ignore,
 ) -> Written:
     """Save the previous values, ask, write what differs, read it back: see ``write_back``.

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from fatektool.jobs.progress import Progress
 
 
-class Part(Protocol):
+class PlannedPart(Protocol):
     """One thing that is written: a program, or values of elements. It is planned on this PLC just now."""
 
     @property
@@ -88,7 +88,7 @@ class WritePlan:
         rollback: write back the previous data if writing or reading back finally fails.
     """
 
-    parts: tuple[Part, ...]
+    parts: tuple[PlannedPart, ...]
     copy: SafetyCopy
     failed: str
     mode: str = ""

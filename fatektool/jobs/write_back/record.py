@@ -29,7 +29,7 @@ RESTORE: Final = "restore"
 _MAX_FILE: Final = 1 << 16
 
 
-class Mark(Protocol):
+class WriteMark(Protocol):
     """Records a write: ``begin`` before its first request, ``end`` when it is complete or undone."""
 
     def begin(self, safety_copy: Path | None) -> None:

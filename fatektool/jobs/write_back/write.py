@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 
 from fatektool.callbacks import ignore
 from fatektool.errors import FatektoolError, LineError, PlcError, RestoreIncomplete
-from fatektool.jobs.write_back.record import NO_MARK, Mark
+from fatektool.jobs.write_back.record import NO_MARK, WriteMark
 from fatektool.jobs.write_back.safety_copy import kept
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def write_back(
     plan: WritePlan,
     agree: Agree = agreed,
     *,
-    mark: Mark = NO_MARK,
+    mark: WriteMark = NO_MARK,
     progress: Progress = ignore,
 ) -> Path | None:
     """Save what is there, ask, write, read back.
@@ -105,7 +105,7 @@ def _failed(
     plan: WritePlan,
     path: Path | None,
     error: Exception | KeyboardInterrupt,
-    mark: Mark,
+    mark: WriteMark,
     progress: Progress,
 ) -> FatektoolError:
     """The error for a write that failed on the way; it is rolled back first if that is planned."""

@@ -17,7 +17,7 @@ import struct
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from fatektool.ladder.circuit.roles import Role
-from fatektool.ladder.operands import Kind
+from fatektool.ladder.operands import OperandKind
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -53,7 +53,9 @@ def shown_bit(leaf: Leaf) -> Shown | None:
         return None if leaf.element is None else Shown(leaf.element, 1)
     if leaf.role in {Role.STEP, Role.COIL}:
         (operand,) = leaf.instruction.operands
-        if operand.element is not None and (operand.part.kind is Kind.BIT or operand.element[0] in "TC"):
+        if operand.element is not None and (
+            operand.part.kind is OperandKind.BIT or operand.element[0] in "TC"
+        ):
             return Shown(operand.element, 1)
     return None
 
@@ -73,7 +75,7 @@ def shown_operand(leaf: Leaf, operand: Operand) -> Shown | None:
     """The element whose value an operand has; None for a constant, and where it is not known which it is."""
     if operand.element is None:
         return None
-    if operand.part.kind is Kind.BIT:
+    if operand.part.kind is OperandKind.BIT:
         return Shown(operand.element, 1)
     symbol = operand.element.rstrip("0123456789")
     number = int(operand.element[len(symbol) :])
@@ -120,7 +122,7 @@ def operand_number(leaf: Leaf, operand: Operand, read: Reader) -> int | float | 
 def _is_float(leaf: Leaf, operand: Operand) -> bool:
     text = leaf.instruction.form.text
     if not text.startswith("FUN 20"):
-        return operand.part.kind is Kind.FLOAT
+        return operand.part.kind is OperandKind.FLOAT
     of_integer = {"I->F": 0, "F->I": 1}  # the operand that is no float
     place = leaf.instruction.operands.index(operand)
     return all(place != number for name, number in of_integer.items() if name in text)

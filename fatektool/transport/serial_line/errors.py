@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from fatektool.errors import FatektoolError, LineError, PortBusy, TransportClosed, UsageError
 from fatektool.transport.nearly import meant, next_step
-from fatektool.transport.serial_line.windows import Kind, windows_error
+from fatektool.transport.serial_line.windows import WindowsErrorKind, windows_error
 
 if TYPE_CHECKING:
     from fatektool.transport.base import LineSettings
@@ -56,25 +56,25 @@ def _windows_error(target: str, settings: LineSettings, error: Exception) -> Lin
     if found is None:
         return None
     match found.kind:
-        case Kind.MISSING:
+        case WindowsErrorKind.MISSING:
             return LineError(f"{target}: no such port", hint=next_step(target))
-        case Kind.BUSY:
+        case WindowsErrorKind.BUSY:
             return PortBusy(
                 f"{target}: another program has the port open ({found})",
                 hint="close that program (a terminal, the vendor's software), or wait and run again",
             )
-        case Kind.NOT_SUPPORTED:
+        case WindowsErrorKind.NOT_SUPPORTED:
             return LineError(
                 f"{target}: cannot be used as a serial port at {settings}: {found.text} ({found})",
                 hint="check the name; check that the adapter supports this --baud and --format",
             )
-        case Kind.BROKEN:
+        case WindowsErrorKind.BROKEN:
             return LineError(
                 f"{target}: {found.text} ({found})",
                 hint="unplug the adapter and plug it in again; if that does not help, install its "
                 "manufacturer's driver",
             )
-        case Kind.GONE:
+        case WindowsErrorKind.GONE:
             return LineError(
                 f"{target}: {found.text} ({found})",
                 hint="check that the adapter is plugged in; unplug it, plug it in again and run again",

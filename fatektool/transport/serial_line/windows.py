@@ -19,7 +19,7 @@ from typing import Final, NamedTuple
 _NUMBER: Final = re.compile(r"\w+\(-?\d+, .*, None, (\d+)\)", re.DOTALL)
 
 
-class Kind(Enum):
+class WindowsErrorKind(Enum):
     """What a number means for the user."""
 
     MISSING = "missing"
@@ -39,7 +39,7 @@ class WindowsError(NamedTuple):
     """
 
     number: int
-    kind: Kind
+    kind: WindowsErrorKind
     text: str
 
     def __str__(self) -> str:
@@ -47,32 +47,32 @@ class WindowsError(NamedTuple):
 
 
 _TABLE: Final = (
-    WindowsError(1, Kind.NOT_SUPPORTED, "it is not a serial port"),
-    WindowsError(2, Kind.MISSING, "no such port"),
-    WindowsError(3, Kind.MISSING, "no such port"),
-    WindowsError(5, Kind.BUSY, "access denied"),
-    WindowsError(6, Kind.NOT_SUPPORTED, "it is not a serial port"),
-    WindowsError(15, Kind.MISSING, "no such port"),
-    WindowsError(20, Kind.GONE, "the device is not connected"),
-    WindowsError(21, Kind.GONE, "the device is not ready"),
-    WindowsError(22, Kind.GONE, "the device does not accept commands"),
-    WindowsError(31, Kind.BROKEN, "the device or its driver does not work"),
-    WindowsError(32, Kind.BUSY, "another program has the port open"),
-    WindowsError(50, Kind.NOT_SUPPORTED, "the driver does not support this"),
-    WindowsError(53, Kind.MISSING, "no such port"),
-    WindowsError(55, Kind.GONE, "the device is no longer available"),
-    WindowsError(87, Kind.NOT_SUPPORTED, "the driver does not accept this baud rate or format"),
-    WindowsError(121, Kind.GONE, "the device does not answer the driver"),
-    WindowsError(123, Kind.MISSING, "no such port"),
-    WindowsError(161, Kind.MISSING, "no such port"),
-    WindowsError(170, Kind.BUSY, "another program has the port open"),
-    WindowsError(433, Kind.GONE, "the device no longer exists"),
-    WindowsError(617, Kind.GONE, "the device was removed"),
-    WindowsError(995, Kind.GONE, "the driver aborted the operation"),
-    WindowsError(1117, Kind.BROKEN, "the device or its driver does not work"),
-    WindowsError(1167, Kind.GONE, "the device is not connected"),
-    WindowsError(1450, Kind.BROKEN, "the system has no resources for the device"),
-    WindowsError(1617, Kind.GONE, "the device was removed"),
+    WindowsError(1, WindowsErrorKind.NOT_SUPPORTED, "it is not a serial port"),
+    WindowsError(2, WindowsErrorKind.MISSING, "no such port"),
+    WindowsError(3, WindowsErrorKind.MISSING, "no such port"),
+    WindowsError(5, WindowsErrorKind.BUSY, "access denied"),
+    WindowsError(6, WindowsErrorKind.NOT_SUPPORTED, "it is not a serial port"),
+    WindowsError(15, WindowsErrorKind.MISSING, "no such port"),
+    WindowsError(20, WindowsErrorKind.GONE, "the device is not connected"),
+    WindowsError(21, WindowsErrorKind.GONE, "the device is not ready"),
+    WindowsError(22, WindowsErrorKind.GONE, "the device does not accept commands"),
+    WindowsError(31, WindowsErrorKind.BROKEN, "the device or its driver does not work"),
+    WindowsError(32, WindowsErrorKind.BUSY, "another program has the port open"),
+    WindowsError(50, WindowsErrorKind.NOT_SUPPORTED, "the driver does not support this"),
+    WindowsError(53, WindowsErrorKind.MISSING, "no such port"),
+    WindowsError(55, WindowsErrorKind.GONE, "the device is no longer available"),
+    WindowsError(87, WindowsErrorKind.NOT_SUPPORTED, "the driver does not accept this baud rate or format"),
+    WindowsError(121, WindowsErrorKind.GONE, "the device does not answer the driver"),
+    WindowsError(123, WindowsErrorKind.MISSING, "no such port"),
+    WindowsError(161, WindowsErrorKind.MISSING, "no such port"),
+    WindowsError(170, WindowsErrorKind.BUSY, "another program has the port open"),
+    WindowsError(433, WindowsErrorKind.GONE, "the device no longer exists"),
+    WindowsError(617, WindowsErrorKind.GONE, "the device was removed"),
+    WindowsError(995, WindowsErrorKind.GONE, "the driver aborted the operation"),
+    WindowsError(1117, WindowsErrorKind.BROKEN, "the device or its driver does not work"),
+    WindowsError(1167, WindowsErrorKind.GONE, "the device is not connected"),
+    WindowsError(1450, WindowsErrorKind.BROKEN, "the system has no resources for the device"),
+    WindowsError(1617, WindowsErrorKind.GONE, "the device was removed"),
 )
 ERRORS: Final = {each.number: each for each in _TABLE}
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 import pytest
 
-from fatektool.cli.shared.rounds import Pace, paced_rounds
+from fatektool.cli.shared.rounds import RoundTimes, paced_rounds
 from fatektool.errors import LineError, NoAnswer, TransportClosed
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class Line:
     def warn(self, text: str) -> None:
         self.warned.append(text)
 
-    def rounds(self, pace: Pace, *, patient: bool = False) -> Iterator[int]:
+    def rounds(self, pace: RoundTimes, *, patient: bool = False) -> Iterator[int]:
         return paced_rounds(
             cast("Plc", self),
             self.read,
@@ -72,41 +72,41 @@ def lost(*numbers: int) -> Callable[[int], LineError | None]:
 
 def test_each_begins_on_time() -> None:
     made = line()
-    assert [*made.rounds(Pace(1, 4))] == [0, 1, 2, 3]
+    assert [*made.rounds(RoundTimes(1, 4))] == [0, 1, 2, 3]
     assert made.began == [0, 1, 2, 3]
     assert made.now == 3.25  # no wait behind the last
 
 
 def test_a_round_that_takes_long_delays_the_next_and_none_is_caught_up() -> None:
     made = line(lambda number: 2.5 if number == 1 else 0.25)
-    assert [*made.rounds(Pace(1, 4))] == [0, 1, 2, 3]
+    assert [*made.rounds(RoundTimes(1, 4))] == [0, 1, 2, 3]
     assert made.began == [0, 1, 3.5, 4.5]
 
 
 def test_a_round_that_fails_is_said_and_not_counted() -> None:
     made = line(fails=lost(1, 2))
-    assert [*made.rounds(Pace(1, 3))] == [0, 3, 4]
+    assert [*made.rounds(RoundTimes(1, 3))] == [0, 3, 4]
     assert made.warned == ["lost 1; trying again", "lost 2; trying again"]
     assert len(made.failures) == 2
 
 
 def test_the_first_or_ten_in_a_row_end_it() -> None:
     with pytest.raises(NoAnswer, match="lost 0"):
-        [*line(fails=lost(0)).rounds(Pace(1))]
+        [*line(fails=lost(0)).rounds(RoundTimes(1))]
     made = line(fails=lost(*range(1, 10), *range(11, 30)))
     with pytest.raises(NoAnswer, match="lost 20"):
-        [*made.rounds(Pace(1))]
+        [*made.rounds(RoundTimes(1))]
     assert len(made.failures) == 9 + 10
 
 
 def test_nobody_to_warn_is_no_end() -> None:
     made = line(fails=lambda number: NoAnswer("lost") if number < 1000 else None)
-    assert [*islice(made.rounds(Pace(1), patient=True), 2)] == [1000, 1001]
+    assert [*islice(made.rounds(RoundTimes(1), patient=True), 2)] == [1000, 1001]
     assert (made.warned, len(made.failures)) == ([], 1000)
 
 
 def test_a_broken_line_is_opened_anew() -> None:
     errors = {1: TransportClosed("gone"), 2: NoAnswer("lost")}
     made = line(fails=errors.get)
-    assert [*made.rounds(Pace(1, 3))] == [0, 3, 4]
+    assert [*made.rounds(RoundTimes(1, 3))] == [0, 3, 4]
     assert made.broken == [False, True, False, False]

@@ -8,13 +8,13 @@ import click
 
 from fatektool.cli.elements.documents import apply_document
 from fatektool.cli.elements.values import shown, warn_of
-from fatektool.cli.shared.addressee import Origin, Pace
+from fatektool.cli.shared.addressee import ExchangeTime, Origin
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.modbus_map import modbus_map_option
 from fatektool.cli.shared.options import PATH
 from fatektool.cli.shared.put_values import offer_of, put_values, result_lines
 from fatektool.cli.shared.unfinished import forget_those_undone
-from fatektool.cli.shared.write_back import Writing
+from fatektool.cli.shared.write_back import WriteCommand
 from fatektool.cli.shared.write_options import Terms, write_options
 from fatektool.errors import PlcError
 from fatektool.jobs.elements.reads import named
@@ -48,9 +48,9 @@ def apply_command(
     (exit 6), the same command writes what is left.
     """
     snapshot = load_snapshot(file, voice.warn)
-    writing = Writing(connection, voice, terms, file, *sorted(only))
+    writing = WriteCommand(connection, voice, terms, file, *sorted(only))
     with writing.open() as plc:
-        pace = Pace(plc)
+        pace = ExchangeTime(plc)
         plan = plan_apply(plc, snapshot, only)
         writing.require_answer(changes=bool(plan.changes))
         _warn(plan, voice)

@@ -9,7 +9,7 @@ import click
 from fatektool.cli.elements.values import warn_of
 from fatektool.cli.line.link.documents import changes_document, modem_document
 from fatektool.cli.line.link.rows import modem_rows
-from fatektool.cli.shared.addressee import Pace
+from fatektool.cli.shared.addressee import ExchangeTime
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.output import Voice, table
 from fatektool.cli.shared.put_values import (
@@ -19,7 +19,7 @@ from fatektool.cli.shared.put_values import (
     put_values,
     result_lines,
 )
-from fatektool.cli.shared.write_back import Writing
+from fatektool.cli.shared.write_back import WriteCommand
 from fatektool.cli.shared.write_options import Terms, write_options
 from fatektool.errors import PlcError
 from fatektool.jobs.plcports.host import read_host
@@ -102,9 +102,9 @@ def set_command(
     settings = ModemSettings(
         number, on, pulse, rings, dial_control, None if profile is None else int(profile == "user")
     )
-    writing = Writing(connection, voice, terms, None, repr(settings))
+    writing = WriteCommand(connection, voice, terms, None, repr(settings))
     with writing.open() as plc:
-        pace = Pace(plc)
+        pace = ExchangeTime(plc)
         plan = plan_modem(plc, settings)
         host = read_host(plc)
         writing.require_answer(changes=bool(plan.changes))

@@ -16,7 +16,7 @@ from fatektool.cli.many.fleet.words import summary_words
 from fatektool.cli.many.outcome import JobResult, Outcome, failure
 from fatektool.cli.shared.connection import Connection
 from fatektool.cli.shared.inventory_file import complete_names, inventory_option, open_inventory
-from fatektool.cli.shared.options import Seconds, voice_options
+from fatektool.cli.shared.options import SecondsType, voice_options
 from fatektool.errors import FatektoolError
 from fatektool.files.times import utc
 from fatektool.inventory.select import select
@@ -83,7 +83,7 @@ def fleet_options(function: F) -> F:
     )
     @click.option(
         "--deadline",
-        type=Seconds(0, 86400, above=True),
+        type=SecondsType(0, 86400, above=True),
         default=1800.0,
         show_default=True,
         metavar="S",

@@ -10,7 +10,7 @@ from fatektool.cli.many.history.documents import (
     record_document,
 )
 from fatektool.cli.many.history.options import history_option
-from fatektool.cli.shared.options import PATH, Seconds, voice_options
+from fatektool.cli.shared.options import PATH, SecondsType, voice_options
 from fatektool.cli.shared.output import table
 from fatektool.errors import PushFailed
 from fatektool.history.history import History
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--lock-wait",
-    type=Seconds(0, 86400),
+    type=SecondsType(0, 86400),
     default=60.0,
     show_default=True,
     metavar="S",

@@ -12,9 +12,9 @@ from fatektool.cli.programs.monitor.screen import Screen
 from fatektool.cli.programs.network_range import chosen
 from fatektool.cli.programs.program_files import comments_at, comments_options, program_file, warn_of_code
 from fatektool.cli.shared.connection_options import connection_options
-from fatektool.cli.shared.options import PATH, Seconds
+from fatektool.cli.shared.options import PATH, SecondsType
 from fatektool.cli.shared.pairs import apart
-from fatektool.cli.shared.rounds import Pace, failed_in_line
+from fatektool.cli.shared.rounds import RoundTimes, failed_in_line
 from fatektool.errors import FatektoolError, PlcError
 from fatektool.jobs.monitor.live import LiveNetwork, Monitor
 
@@ -35,7 +35,7 @@ _INTERVAL_ON_SCREEN_S: Final = 0.25
 @click.option("--why", metavar="ELEMENT", help="Say why ELEMENT is on or off, once.")
 @click.option(
     "--interval",
-    type=Seconds(0, 86400),
+    type=SecondsType(0, 86400),
     metavar="S",
     help="From round to round; by default 0.25 on a terminal, else 1.",
 )
@@ -78,7 +78,7 @@ def monitor_command(
         return 0 if is_whole else PlcError.exit_code
     on_screen = sys.stdout.isatty() and not voice.json
     default_s = _INTERVAL_ON_SCREEN_S if on_screen else _INTERVAL_S
-    pace = Pace(default_s if interval is None else interval, count)
+    pace = RoundTimes(default_s if interval is None else interval, count)
     live = [LiveNetwork(network) for network in networks]
     try:
         with connection.open(voice, lend=True) as plc:

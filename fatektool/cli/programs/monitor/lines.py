@@ -15,13 +15,13 @@ from fatektool.cli.shared.streams import reader_is_gone
 
 if TYPE_CHECKING:
     from fatektool.cli.shared.output import Voice
-    from fatektool.cli.shared.rounds import Pace
+    from fatektool.cli.shared.rounds import RoundTimes
     from fatektool.client import Plc
     from fatektool.errors import LineError
     from fatektool.jobs.monitor.live import Monitor
 
 
-def print_rounds(plc: Plc, monitor: Monitor, pace: Pace, voice: Voice) -> bool:
+def print_rounds(plc: Plc, monitor: Monitor, pace: RoundTimes, voice: Voice) -> bool:
     """Print a line a round; False if an element of the last had no value.
 
     Raises:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from types import TracebackType
     from typing import Self
 
-    from fatektool.cli.shared.rounds import Pace
+    from fatektool.cli.shared.rounds import RoundTimes
     from fatektool.client import Plc
     from fatektool.errors import LineError
     from fatektool.jobs.monitor.live import Monitor
@@ -52,7 +52,7 @@ class Reading:
         self,
         plc: Plc,
         monitor: Monitor,
-        pace: Pace,
+        pace: RoundTimes,
         on_news: Callable[[], object],
         *,
         clock: Callable[[], float] = time.monotonic,

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from fatektool.cli.programs.monitor.keys import Keys
     from fatektool.cli.shared.output import Voice
-    from fatektool.cli.shared.rounds import Pace
+    from fatektool.cli.shared.rounds import RoundTimes
     from fatektool.client import Plc
     from fatektool.jobs.monitor.live import LiveNetwork
     from fatektool.ladder.drawing.text.live import Row
@@ -41,7 +41,12 @@ class Screen:
     """
 
     def __init__(
-        self, plc: Plc, file: ProgramFile, networks: Sequence[LiveNetwork], comments: Comments, pace: Pace
+        self,
+        plc: Plc,
+        file: ProgramFile,
+        networks: Sequence[LiveNetwork],
+        comments: Comments,
+        pace: RoundTimes,
     ) -> None:
         from rich.console import Console
 

@@ -18,7 +18,7 @@ import pytest
 from fatektool.cli.programs.monitor.frame import Frames
 from fatektool.cli.programs.monitor.reading import Reading
 from fatektool.cli.programs.monitor.view import View
-from fatektool.cli.shared.rounds import Pace
+from fatektool.cli.shared.rounds import RoundTimes
 from fatektool.ladder.drawing.text.letters import Letters
 from fatektool.ladder.drawing.text.live import LivePen
 from tests.cli.programs.monitor.test_view import COMMENTS
@@ -51,7 +51,7 @@ class Machine:
         self.reading = Reading(
             self.bench.plc,
             self.bench.monitor,
-            Pace(INTERVAL_S),
+            RoundTimes(INTERVAL_S),
             self.draw,
             clock=self.bench.transport.clock,
             wait=self.wait,

@@ -9,7 +9,7 @@ import click
 from fatektool.cli.elements.values import warn_of
 from fatektool.cli.line.link.documents import changes_document, fault_documents, table_write_document
 from fatektool.cli.line.link.table.view import table_lines
-from fatektool.cli.shared.addressee import Pace
+from fatektool.cli.shared.addressee import ExchangeTime
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.options import PATH
 from fatektool.cli.shared.put_values import (
@@ -19,7 +19,7 @@ from fatektool.cli.shared.put_values import (
     put_values,
     result_lines,
 )
-from fatektool.cli.shared.write_back import Writing
+from fatektool.cli.shared.write_back import WriteCommand
 from fatektool.cli.shared.write_options import Terms, write_options
 from fatektool.errors import DataError, PlcError
 from fatektool.files.atomic import read_bounded
@@ -60,12 +60,12 @@ def write_command(
     """
     start = parse_start(sr, "SR")
     table = load_table(read_bounded(file, MAX_TOML), str(file))
-    writing = Writing(connection, voice, terms, file, str(start))
+    writing = WriteCommand(connection, voice, terms, file, str(start))
     words = table.to_words()
     faults = [*place_faults(start, len(words)), *table.faults()]
     _require_good(file, table, faults, force=faulty)
     with writing.open() as plc:
-        pace = Pace(plc)
+        pace = ExchangeTime(plc)
         plan = plan_write(plc, start, words)
         host = read_host(plc, needs_of_table(table))
         writing.require_answer(changes=bool(plan.changes))
