@@ -105,12 +105,14 @@ class Tap:
         self._line = simulation.line()
         self.count: dict[str, int] = {}
         self.pages_written: list[int] = []
+        self.last = b""
         self.before: Callable[[Seen], object] = lambda _seen: None
         self.after: Callable[[Seen], object] = lambda _seen: None
         self.forge: Callable[[Seen, bytes], bytes] = lambda _seen, answer: answer
 
     def receive(self, data: bytes, now: float) -> list[tuple[float, bytes]]:
         command = data[COMMAND].decode()
+        self.last = bytes(data)
         number = self.count[command] = self.count.get(command, 0) + 1
         page = int(data[PAGE], 16) if command in {READ_PAGE, WRITE_PAGE} else None
         seen = Seen(command, number, page, self.count.get(DETAILED_STATUS, 0))

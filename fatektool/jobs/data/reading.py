@@ -96,16 +96,29 @@ def data_counts(plc: Plc, system: System) -> dict[str, int]:
 
 
 def _file_registers(plc: Plc) -> int:
-    """How many file registers F the PLC has, of which 53 says nothing: the first address that is refused."""
+    """How many file registers F the PLC has, of which 53 says nothing: the first address that is refused.
+
+    A PLC that does not know the kind may be silent instead of refusing it. That is believed if it answers 53
+    in between: silence because of the line would make a file without registers that the PLC has.
+    """
 
     def there(address: int) -> bool:
         try:
             plc.link.ask(ReadRegisters(Element("F", address), 1))
-        except (PlcRefused, NoAnswer):  # one that does not know the kind may be silent
+        except PlcRefused:
             return False
         return True
 
-    if not there(0):
+    try:
+        has_any = there(0)
+    except NoAnswer:
+        plc.detailed_status()
+        try:
+            has_any = there(0)
+        except NoAnswer:
+            plc.detailed_status()
+            return 0
+    if not has_any:
         return 0
     low, high = 0, KINDS["F"].last + 1
     while high - low > 1:

@@ -76,7 +76,7 @@ def write_elements(
     both = overlapping(element for element, _ in items)
     if both is not None:
         raise UsageError(f"{both[0]} and {both[1]} overlap: expected each discrete and register once")
-    refused = _Writer(plc, dict(items), ledger or Ledger()).write()
+    refused = send_elements(plc, items, ledger or Ledger())
     found = read_elements(plc, [element for element, _ in items])
     failed = [
         (element, wanted)
@@ -95,6 +95,23 @@ def write_elements(
         )
         for element, wanted in failed
     ]
+
+
+def send_elements(plc: Plc, items: Sequence[tuple[Element, int]], ledger: Ledger) -> dict[Element, str]:
+    """Write elements of any kind, and read nothing back.
+
+    Args:
+        plc: the PLC.
+        items: elements with raw, unsigned values; no discrete or register twice.
+        ledger: keeps account of what was written, should it end half way.
+
+    Returns:
+        The PLC's error for each element that it refuses, or why it was not tried.
+
+    Raises:
+        LineError: no answer; some of them may be written.
+    """
+    return _Writer(plc, dict(items), ledger).write()
 
 
 class _Writer:

@@ -11,17 +11,23 @@ The order, and what an end at each step leaves in the PLC::
     7. all is read back and compared                           the new program, not yet verified
     8. RUN, if asked                                           the new program
 
+With data there are two parts: the data are read at 3 and saved at 4, and written when 7 has verified the
+program; see ``fatektool.jobs.data.rewrite``.
+
 ``plan_restore`` does 2 and 3; ``carry_out`` does 4 to 7 by ``write_back``, and 8.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fatektool.callbacks import ignore
 from fatektool.errors import LineError, PlcError, PlcNotReady, UsageError
+from fatektool.jobs.data.plan import DataPlan, plan_data, require_data_fits
+from fatektool.jobs.data.reading import data_counts, read_data
+from fatektool.jobs.data.rewrite import DataRewrite
 from fatektool.jobs.programs.backup import backup_of
 from fatektool.jobs.programs.fit import model_warning, require_kin, require_size
 from fatektool.jobs.programs.proving import read_proven
@@ -35,12 +41,13 @@ from fatektool.program.compare import Comparison, compare_images
 from fatektool.program.image import ranges
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from fatektool.client import Plc
     from fatektool.jobs.programs.known import KnownPages
     from fatektool.jobs.progress import Progress
     from fatektool.program.archive import Backup
+    from fatektool.program.data.part import DataPart
     from fatektool.program.image import Program
 
 
@@ -55,6 +62,8 @@ class RestoreOptions:
         rollback: write the previous program back if writing or reading back finally fails.
         any_header: restore a file whose header is invalid and that is marked so.
         single_pass: read the previous program once, not twice.
+        data: write the data on file too.
+        system: write settings too, which are special registers; only with ``data``.
     """
 
     stop: bool = False
@@ -63,6 +72,8 @@ class RestoreOptions:
     rollback: bool = False
     any_header: bool = False
     single_pass: bool = False
+    data: bool = False
+    system: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +88,7 @@ class RestorePlan:
         running: True if the PLC runs now.
         warnings: what the user should know before agreeing.
         options: what was asked.
+        data: what will be written of the data; None if the program alone is restored.
     """
 
     wanted: Program
@@ -86,6 +98,12 @@ class RestorePlan:
     running: bool
     warnings: tuple[str, ...]
     options: RestoreOptions
+    data: DataPlan | None = None
+
+    @property
+    def changes(self) -> bool:
+        """True if anything will be written."""
+        return bool(self.pages or (self.data and self.data.changes))
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,6 +118,7 @@ class RestoreResult:
         mode_before: ``run`` or ``stop``.
         mode_after: ``run`` or ``stop``.
         warnings: what the user should know.
+        not_taken: values, disabled discretes and settings that did not take, in words, by element.
     """
 
     pages_written: int
@@ -109,6 +128,7 @@ class RestoreResult:
     mode_before: str
     mode_after: str
     warnings: tuple[str, ...]
+    not_taken: Mapping[str, str] = field(default_factory=dict)
 
 
 def plan_restore(
@@ -129,7 +149,8 @@ def plan_restore(
         progress: called for each page.
 
     Raises:
-        DataError: another ladder size; a header that does not hold.
+        DataError: another ladder size, or fewer elements than on file; an invalid header.
+        UsageError: the file has no data, and they are to be restored.
         PlcNotReady: a ROM pack is fitted, or the PLC runs and may not be stopped.
         LineError: no answer.
         PlcRefused: the PLC refuses its program.
@@ -138,6 +159,7 @@ def plan_restore(
         backup.program.require_header(
             "restore another backup; or --any-header, if the PLC had this very header when it was backed up"
         )
+    wanted = _data_of(backup, options)
     status = plc.detailed_status()
     require_size(backup.program, status.system.ladder_words)
     if status.flags.rom_pack:
@@ -150,6 +172,8 @@ def plan_restore(
             "the PLC is in RUN: expected STOP before its program is written",
             hint="make the machine safe, then add --stop",
         )
+    if wanted is not None:
+        require_data_fits(wanted, data_counts(plc, status.system))
     reading = (
         read_program(plc, progress=progress) if options.single_pass else read_proven(plc, known, progress)
     )
@@ -174,15 +198,32 @@ def plan_restore(
     if comparison.b_has_more:
         left = ranges(range(count, len(present.pages)))
         warnings.append(f"the PLC has more pages than the file, {left}: they are not changed")
+    before, data = backup_of(plc, reading), None
+    if wanted is not None:
+        there = read_data(plc, reading.status, progress)
+        before, data = replace(before, data=there), plan_data(wanted, there, settings=options.system)
     return RestorePlan(
         backup.program,
-        backup_of(plc, reading),
+        before,
         comparison,
         pages,
         status.flags.running,
         tuple(warnings),
         options,
+        data,
     )
+
+
+def _data_of(backup: Backup, options: RestoreOptions) -> DataPart | None:
+    """The data that are to be restored."""
+    if not options.data:
+        return None
+    if backup.data is None:
+        raise UsageError(
+            "the file has no data: it was saved without --data",
+            hint="restore the program alone, without --data; 'fatektool snapshot apply' writes a snapshot",
+        )
+    return backup.data
 
 
 def carry_out(
@@ -214,11 +255,12 @@ def carry_out(
     """
     running = plan.running
     warnings = plan.warnings
-    path = None
-    if plan.pages:
+    path, data = None, None
+    if plan.changes:
         rewrite = Rewrite(plc, plan.wanted, plan.present, plan.pages, running=running)
+        data = None if plan.data is None else DataRewrite(plc, plan.data)
         whole = WritePlan(
-            (rewrite,),
+            (rewrite,) if data is None else (rewrite, data),
             safety or SafetyBackup(plan.present, plan.wanted, Path(), None),
             "the restore did not complete",
             "STOP: do not switch it to RUN",
@@ -229,7 +271,8 @@ def carry_out(
         warnings += rewrite.warnings
     elif plan.options.run and not running:
         agree(None)
-    if plan.options.run and not running:
+    not_taken = {} if data is None else data.not_taken
+    if plan.options.run and not running and not not_taken:  # with half of its data no machine starts
         _run(plc)
         running = True
     return RestoreResult(
@@ -240,6 +283,7 @@ def carry_out(
         mode_before="run" if plan.running else "stop",
         mode_after="run" if running else "stop",
         warnings=warnings,
+        not_taken=not_taken,
     )
 
 
@@ -293,8 +337,9 @@ def restore(
     plan = plan_restore(plc, backup, options, known=known, progress=progress)
 
     def agree(kept: Path | None) -> None:
-        if plan.pages and not confirm(plan, kept):
+        if plan.changes and not confirm(plan, kept):
             raise UsageError("Aborted. Nothing was written.")
 
-    safety = SafetyBackup(plan.present, plan.wanted, file, folder)
+    wanted = None if plan.data is None else plan.data.wanted
+    safety = SafetyBackup(plan.present, plan.wanted, file, folder, wanted)
     return carry_out(plc, plan, safety, agree, progress=progress)

@@ -28,11 +28,9 @@ class Rewrite:
         plc: the PLC.
         wanted: the program to write.
         present: the program that is in the PLC.
-        pages: which are written, in order; the others are in the PLC already.
+        pages: which are written, in order; the others are in the PLC already. None: nothing is read back.
         running: True if the PLC runs, and is to be stopped.
     """
-
-    before: Final = "its previous program and is in STOP"
 
     def __init__(
         self, plc: Plc, wanted: Program, present: Backup, pages: Sequence[int], *, running: bool
@@ -46,6 +44,12 @@ class Rewrite:
         self._unread: set[int] = set()  # acknowledged, which does not prove that it was written
         self._again: list[int] = []
         self._foreign: list[int] = []
+
+    @property
+    def before(self) -> str:
+        """What is said of a PLC that was not changed."""
+        what = "program" if self._present.data is None else "program and data"
+        return f"its previous {what} and is in STOP"
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -102,11 +106,15 @@ class Rewrite:
             PlcError: the PLC refused a page, or has other data now.
             LineError: no answer.
         """
+        if not self._pages:
+            return
         self._write(self._wanted, self._pages, _NEW, "writing", progress)
         self._prove(self._wanted, _NEW, progress)
 
     def put_back(self, progress: Progress) -> None:
         """Write the previous program back, read all of it back and compare; the errors of ``write``."""
+        if not self._pages:
+            return
         previous = self._present.program
         self._write(previous, self._in(_NEW, _UNCERTAIN), _OLD, "rolling back", progress)
         self._prove(previous, _OLD, progress)

@@ -12,6 +12,7 @@ from itertools import zip_longest
 from typing import TYPE_CHECKING, ClassVar, Final
 
 from fatektool.errors import FatektoolError
+from fatektool.jobs.data.plan import are_data_between
 from fatektool.jobs.programs.known import KnownPages
 from fatektool.jobs.write_back.safety_copy import name_of, save_copy, start_of
 from fatektool.program.archive import load_backup
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fatektool.program.archive import Backup
+    from fatektool.program.data.part import DataPart
     from fatektool.program.image import Program
 
 _MOST_LOOKED_AT: Final = 100
@@ -28,28 +30,51 @@ _MOST_LOOKED_AT: Final = 100
 
 @dataclass(frozen=True, slots=True)
 class SafetyBackup:
-    """The safety copy of a program.
+    """The safety copy of a program, and of the data if they are restored too.
 
     Attributes:
-        present: the program in the PLC.
+        present: what the PLC has.
         wanted: the program that is to be restored.
         file: where that came from.
         folder: where safety backups go; None for none.
+        data: the data that are to be restored; None if they are not.
+        earlier: the copy that an unfinished restore of data made, by its record; None if there is none.
     """
 
-    what: ClassVar[str] = "program"
     key: ClassVar[str] = "safety_backup"
 
     present: Backup
     wanted: Program
     file: Path
     folder: Path | None
+    data: DataPart | None = None
+    earlier: Path | None = None
+
+    @property
+    def what(self) -> str:
+        """What it is a copy of."""
+        return "program" if self.data is None else "program and data"
 
     def find(self, folder: Path) -> Path | None:
         """The safety backup of an unfinished restore of the same file, if the PLC has part of it."""
+        if self.data is not None:
+            return self._find_by_record(self.data)
         return find_safety_backup(
             self.present.program, self.wanted, self.present.source.station, self.file, folder
         )
+
+    def _find_by_record(self, wanted: DataPart) -> Path | None:
+        """The copy that the record names, if all that the PLC has is of that copy or of the file."""
+        there = self.present.data
+        try:
+            old = None if self.earlier is None else load_backup(self.earlier)
+        except FatektoolError:
+            return None  # a damaged copy is of no use, and no reason to stop
+        if old is None or old.data is None or there is None:
+            return None
+        if not _is_between(self.present.program, old.program, self.wanted):
+            return None
+        return self.earlier if are_data_between(there, old.data, wanted) else None
 
     def save(self, folder: Path) -> Path:
         """Write a new one; it is on disk when this returns.
@@ -89,14 +114,17 @@ def find_safety_backup(
         folder: where safety backups are.
     """
     for path, old in _safety_backups(station, file, folder):
-        if old == present or old.ladder_words != present.ladder_words:
-            continue
-        if len(old.pages) != len(present.pages):
-            continue
-        pages = zip_longest(present.pages, old.pages, wanted.pages)
-        if all(page in {before, after} for page, before, after in pages):
+        if old != present and _is_between(present, old, wanted):
             return path
     return None
+
+
+def _is_between(present: Program, old: Program, wanted: Program) -> bool:
+    """True if each page of a program is that of an old one or that of the one to be restored."""
+    if old.ladder_words != present.ladder_words or len(old.pages) != len(present.pages):
+        return False
+    pages = zip_longest(present.pages, old.pages, wanted.pages)
+    return all(page in {before, after} for page, before, after in pages)
 
 
 def known_before_restore(wanted: Program, file: Path, folder: Path | None, station: int) -> KnownPages:

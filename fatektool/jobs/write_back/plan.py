@@ -16,7 +16,7 @@ class PlannedPart(Protocol):
 
     @property
     def before(self) -> str:
-        """What is said of the PLC if this part is known to be as it was."""
+        """What is said of the PLC if this part is known to be as it was; empty if another part says it."""
 
     @property
     def untouched(self) -> bool:

@@ -146,7 +146,7 @@ def _incomplete(plan: WritePlan, path: Path | None, cause: str) -> RestoreIncomp
 
 
 def _before(plan: WritePlan) -> str:
-    return " and ".join(part.before for part in plan.parts)
+    return " and ".join(part.before for part in plan.parts if part.before)
 
 
 def _saved(plan: WritePlan, path: Path | None) -> dict[str, str | None]:

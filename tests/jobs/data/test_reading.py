@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from fatektool.errors import DataError
+from fatektool.errors import DataError, NoAnswer
 from fatektool.jobs.data.reading import read_data
 from fatektool.program.data.uses import CONSTANT, SYMBOLS, Use, use_of, uses_of
 from fatektool.simulator.refusal import Refusal, RefusalCode
@@ -119,3 +119,32 @@ def test_uses_as_the_manual_says() -> None:
     assert {where: use_of(*where) for where in expected} == expected
     assert Use.KEPT in CONSTANT
     assert Use.WORKING not in CONSTANT
+
+
+def test_silence_to_file_registers_is_none_of_them() -> None:
+    plant = filled()
+    plant.tap.forge = lambda seen, answer: b"" if is_of_f(plant) and seen.command == "46" else answer
+    assert data_of(plant).counts["F"] == 0
+
+
+def is_of_f(plant: Filled) -> bool:
+    return plant.tap.last[7:8] == b"F"
+
+
+@pytest.mark.parametrize("lost", range(1, 12))
+def test_a_lost_line_is_no_plc_without_file_registers(lost: int) -> None:
+    """Silence that begins at any request of the search ends the reading, or changes nothing."""
+    plant = filled(1, retries=0)
+    asked = 0
+
+    def silent(seen: Seen, answer: bytes) -> bytes:
+        nonlocal asked
+        asked += seen.command == "46" and is_of_f(plant)
+        return b"" if asked == lost else answer
+
+    plant.tap.forge = silent
+    try:
+        found = data_of(plant)
+    except NoAnswer:
+        return
+    assert found.values == values_of(plant.device)
