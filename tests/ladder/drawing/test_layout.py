@@ -137,7 +137,7 @@ def test_the_characters_join_what_the_plan_joins(circuit: Circuit, columns: int)
     plan = plan_of(circuit)
     for each in (plan, aligned(plan)):
         sheet = Sheet(each, Writer(Pen(Letters()), {}, 60))
-        cuts = list(pairwise(cuts_of(each, sheet.rooms, columns)))
+        cuts = list(pairwise(cuts_of(each, sheet.widths, columns)))
         assert by_characters(sheet, cuts) == by_plan(each)
 
 
@@ -161,5 +161,5 @@ def test_whatever_the_instructions_are_they_come_back_and_the_drawing_joins_what
             assert instructions_of(circuit) == network.instructions
             for plan in (plan_of(circuit), aligned(plan_of(circuit))):
                 sheet = Sheet(plan, Writer(Pen(Letters()), {}, 60))
-                cuts = list(pairwise(cuts_of(plan, sheet.rooms, 60)))
+                cuts = list(pairwise(cuts_of(plan, sheet.widths, 60)))
                 assert by_characters(sheet, cuts) == by_plan(plan)

@@ -53,7 +53,7 @@ class Band:
         at = MARK if begin.column else 0
         self._at = {begin.column: at}
         for column in self._columns:
-            at += 1 + sheet.rooms[column]
+            at += 1 + sheet.widths[column]
             self._at[column + 1] = at
         self._line_of: dict[int, int] = {}
         self._height = self._lay_rows()

@@ -33,12 +33,12 @@ class Cut:
     links_before: bool = True
 
 
-def cuts_of(plan: Plan, rooms: Sequence[int], columns: int) -> list[Cut]:
+def cuts_of(plan: Plan, widths: Sequence[int], columns: int) -> list[Cut]:
     """Where to cut a plan: the beginning, the cuts between, and the end.
 
     Args:
         plan: the plan.
-        rooms: the characters that each of its columns takes.
+        widths: the characters that each of its columns takes.
         columns: those that there are.
     """
     crossing = _Crossing(plan)
@@ -46,19 +46,19 @@ def cuts_of(plan: Plan, rooms: Sequence[int], columns: int) -> list[Cut]:
     while True:
         first = cuts[-1].column
         before = MARK if first else 0
-        fits = [first + count for count in _fitting(rooms[first:], columns - before - 1)]
-        if not fits or fits[-1] == len(rooms):
-            return [*cuts, Cut(len(rooms))]
-        fits = [first + count for count in _fitting(rooms[first:], columns - before - 1 - MARK)]
+        fits = [first + count for count in _fitting(widths[first:], columns - before - 1)]
+        if not fits or fits[-1] == len(widths):
+            return [*cuts, Cut(len(widths))]
+        fits = [first + count for count in _fitting(widths[first:], columns - before - 1 - MARK)]
         last = fits[-1] if fits else first + 1
         cuts.append(crossing.best(range((first + last) // 2 + 1, last + 1)))
 
 
-def _fitting(rooms: Iterable[int], columns: int) -> Iterator[int]:
-    """The counts of columns that have room, each with the place where it begins."""
+def _fitting(widths: Iterable[int], columns: int) -> Iterator[int]:
+    """The counts of columns that fit, each with its place."""
     used = 0
-    for count, room in enumerate(rooms, 1):
-        used += room + 1
+    for count, width in enumerate(widths, 1):
+        used += width + 1
         if used > columns:
             return
         yield count

@@ -1,4 +1,4 @@
-"""What is written at a sign or in a box, and how much room that takes."""
+"""The texts at a sign or in a box, and their width."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ class SignText:
         name: above it.
         sign: itself.
         below: the comments.
-        room: the columns that it needs.
+        width: the columns that it needs.
     """
 
     look: Look
     name: str
     sign: str
     below: tuple[str, ...]
-    room: int
+    width: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +49,7 @@ class BoxText:
         outputs: that of each output.
         settings: its operands, a line each or more.
         before: the columns of the inputs' names.
-        room: the columns that it needs, edges included.
+        width: the columns that it needs, edges included.
     """
 
     title: str
@@ -57,7 +57,7 @@ class BoxText:
     outputs: tuple[str, ...]
     settings: tuple[str, ...]
     before: int
-    room: int
+    width: int
 
 
 class Writer:
@@ -91,9 +91,9 @@ class Writer:
             Look.GAP: " " * 3,
         }[sign.look]
         name, kept = (sign.name, 0) if self._states is None else self._states.name(leaf, sign.name)
-        room = max(width_of(drawn) + 4, width_of(name), kept)
-        below = wrapped(self._remark(sign.elements), max(room, _COMMENT))[:_MOST_LINES]
-        return SignText(sign.look, name, drawn, tuple(below), max([room, *map(width_of, below)]))
+        width = max(width_of(drawn) + 4, width_of(name), kept)
+        below = wrapped(self._remark(sign.elements), max(width, _COMMENT))[:_MOST_LINES]
+        return SignText(sign.look, name, drawn, tuple(below), max([width, *map(width_of, below)]))
 
     def box(self, box: BoxCell) -> BoxText:
         """A box and what is in it."""
@@ -115,8 +115,8 @@ class Writer:
         if self._states is not None:
             settings += self._states.of_title(box.leaf, frame)
         (title,) = wrapped(self._pen.letters.spell(frame.title), self._widest - 4)[:1]
-        room = max([beside + max(map(width_of, settings), default=0), width_of(title) + 4])
-        return BoxText(title, inputs, outputs, tuple(settings), before, room)
+        width = max([beside + max(map(width_of, settings), default=0), width_of(title) + 4])
+        return BoxText(title, inputs, outputs, tuple(settings), before, width)
 
     def _setting(self, text: str, remark: str, columns: int) -> list[str]:
         """An operand with its comment beside it, or under it."""

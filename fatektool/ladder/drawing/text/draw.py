@@ -70,10 +70,10 @@ def bands_of(
     writer = Writer(pen, comments, columns - 2 * MARK - 2, states)
     plan = plan_of(circuit)
     sheet = Sheet(aligned(plan), writer)
-    cuts = cuts_of(sheet.plan, sheet.rooms, columns)
+    cuts = cuts_of(sheet.plan, sheet.widths, columns)
     if len(cuts) > 2:
         sheet = Sheet(plan, writer)
-        cuts = cuts_of(sheet.plan, sheet.rooms, columns)
+        cuts = cuts_of(sheet.plan, sheet.widths, columns)
     bands, number = [], 1
     for begin, end in pairwise(cuts):
         bands.append(Band(sheet, begin, end, number, pen.onward))

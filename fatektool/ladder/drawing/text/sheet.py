@@ -20,15 +20,15 @@ class Sheet:
         plan: it.
         signs: its signs.
         boxes: its boxes.
-        rooms: the characters that each column takes.
+        widths: the characters that each column takes.
     """
 
     def __init__(self, plan: Plan, writer: Writer) -> None:
         self.plan = plan
         self.signs: list[tuple[Cell, SignText]] = [(cell, writer.sign(cell.leaf)) for cell in plan.cells]
         self.boxes: list[tuple[BoxCell, BoxText]] = [(box, writer.box(box)) for box in plan.boxes]
-        self.rooms = [1] * plan.columns
+        self.widths = [1] * plan.columns
         for cell, sign in self.signs:
-            self.rooms[cell.column] = max(self.rooms[cell.column], sign.room)
+            self.widths[cell.column] = max(self.widths[cell.column], sign.width)
         for box, text in self.boxes:
-            self.rooms[box.column] = max(self.rooms[box.column], text.room)
+            self.widths[box.column] = max(self.widths[box.column], text.width)
