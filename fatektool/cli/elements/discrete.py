@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from fatektool.jobs.elements.discretes import DiscreteState, DiscreteStates
 
 
-@click.group("discrete", epilog="Example: fatektool discrete disable X16 -p /dev/ttyUSB0")
+@click.group("discrete", epilog="Example: fatektool discrete disable X16 -p sim:")
 def discrete_command() -> None:
     """Enable, disable, set and reset single discretes, and list their state.
 
@@ -44,7 +44,7 @@ def _control(name: str, control: Control, text: str) -> None:
     if control not in SWITCHES:
         needs += (Command.READ_DISABLED,)
 
-    @discrete_command.command(name, help=text, epilog=f"Example: fatektool discrete {name} X16 Y0-Y3 -p sim:")
+    @discrete_command.command(name, help=text, epilog=f"Example: fatektool discrete {name} M16 Y0-Y3 -p sim:")
     @click.argument("elements", nargs=-1, required=True)
     @broadcast_option
     @yes_option

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 @click.command(
-    "read", epilog="Example: fatektool read R12:3 WM8 DR2 Y0-Y7 X16 D4:f32 -p /dev/ttyUSB0", help=(
+    "read", epilog="Example: fatektool read R12:3 WM8 DR2 Y0-Y7 X16 D4:f32 -p sim:", help=(
         "Read elements of any kind. On a terminal neighbours are shown together: R0-R99 as a grid, X0-X31 as "
         f"bits.\n\n{SELECTION}"
     ),

@@ -21,7 +21,11 @@ F = TypeVar("F", bound="Callable[..., Any]")
 def spec_options(function: F) -> F:
     """``--spec`` and ``--group``; the command gets ``spec`` and ``groups``."""
     function = click.option(
-        "--group", "groups", multiple=True, help="Only items of this group of --spec; repeat for more."
+        "--group",
+        "groups",
+        multiple=True,
+        metavar="GROUP",
+        help="Only items of this group of --spec; repeat for more.",
     )(function)
     return click.option(
         "--spec", type=PATH, metavar="FILE.toml", help="What to read, with names, scales and units."

@@ -45,7 +45,7 @@ _AROUND: Final = 4  # title, header, what is left out, and the line of the curso
 
 @click.command(
     "watch",
-    epilog="Example: fatektool watch R12 D4:f32 Y0-Y7 --interval 0.5 -p /dev/ttyUSB0",
+    epilog="Example: fatektool watch R12 D4:f32 Y0-Y7 --interval 0.5 --count 3 -p sim:",
     help="Show values live until Ctrl-C; without a terminal, print one NDJSON line a round.\n\n"
     "Another process can use the line between two rounds.\n\n"
     f"{SELECTION}",
@@ -58,7 +58,9 @@ _AROUND: Final = 4  # title, header, what is left out, and the line of the curso
     metavar="S",
     help="Interval of the rounds; by default interval_s of --spec, else 1.",
 )
-@click.option("--count", type=click.IntRange(1), help="Number of rounds; by default until Ctrl-C.")
+@click.option(
+    "--count", type=click.IntRange(1), metavar="N", help="Number of rounds; by default until Ctrl-C."
+)
 @comments_options
 @report_option
 @connection_options

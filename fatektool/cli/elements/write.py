@@ -25,9 +25,7 @@ if TYPE_CHECKING:
     from fatektool.jobs.elements.writes import NotTaken
 
 
-@click.command(
-    "write", epilog="Example: fatektool write R12=4261 WM8=0x5555 DR2=-1 D4:f32=1.5 Y0=on -p /dev/ttyUSB0"
-)
+@click.command("write", epilog="Example: fatektool write R12=4261 WM8=0x5555 DR2=-1 D4:f32=1.5 Y0=on -p sim:")
 @click.argument("assignments", nargs=-1, required=True, metavar="ELEMENT=VALUE…")
 @broadcast_option
 @yes_option

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from fatektool.cli.shared.output import Voice
 
 
-@click.command("doctor", epilog="Example: fatektool doctor -p /dev/ttyUSB0")
+@click.command("doctor", epilog="Example: fatektool doctor -p sim:")
 @connection_options
 def doctor_command(connection: Connection, voice: Voice) -> int:
     """Diagnose a PLC and its line: each fault with its evidence and what to do.

@@ -32,7 +32,7 @@ _TCP = "modbus-tcp"
 @click.argument("command")
 @click.argument("operands", nargs=-1, metavar="[OPERANDS]…")
 @click.option("--protocol", type=ChoiceType(PROTOCOLS), default=DEFAULT, show_default=True)
-@click.option("-s", "--station", type=click.IntRange(0, 255), default=1, show_default=True)
+@click.option("-s", "--station", metavar="N", type=click.IntRange(0, 255), default=1, show_default=True)
 @click.option(
     "--as",
     "role",
@@ -43,7 +43,9 @@ _TCP = "modbus-tcp"
 )
 @click.option("--error", metavar="CODE", help="The answer that refuses COMMAND with this error code, in hex.")
 @click.option("--data", metavar="HEX", help="The data field in hex, for any COMMAND; - for an empty one.")
-@click.option("--number", type=click.IntRange(0, 0xFFFF), help=f"Number of a {_TCP} frame.  [default: 0]")
+@click.option(
+    "--number", type=click.IntRange(0, 0xFFFF), metavar="N", help=f"Number of a {_TCP} frame.  [default: 0]"
+)
 @voice_options
 def encode_command(
     command: str,

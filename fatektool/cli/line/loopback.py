@@ -10,7 +10,7 @@ import click
 from fatektool.cli import INTERRUPTED
 from fatektool.cli.line.documents.linetest import loopback_document
 from fatektool.cli.line.loopback_view import LiveFigures, lines
-from fatektool.cli.shared.connection_options import connection_options
+from fatektool.cli.shared.connection_options import connection_options, without_effect
 from fatektool.cli.shared.options import SecondsType, Several
 from fatektool.cli.shared.pairs import apart, together
 from fatektool.cli.shared.report import report_option, write_report
@@ -31,9 +31,11 @@ if TYPE_CHECKING:
 
 @click.command(
     "loopback",
-    epilog="Example: fatektool loopback --duration 3600 --max-error-rate 0.001 --json -p /dev/ttyUSB0",
+    epilog="Example: fatektool loopback --count 200 --max-error-rate 0.001 --json -p sim:",
 )
-@click.option("--count", type=click.IntRange(1), help=f"Number of exchanges.  [default: {DEFAULT_COUNT}]")
+@click.option(
+    "--count", type=click.IntRange(1), metavar="N", help=f"Number of exchanges.  [default: {DEFAULT_COUNT}]"
+)
 @click.option(
     "--duration",
     type=SecondsType(0, inf, above=True),
@@ -43,6 +45,7 @@ if TYPE_CHECKING:
 @click.option(
     "--sizes",
     type=Several(click.IntRange(0, MAX_FRAME)),
+    metavar="N,…",
     help=f"Numbers of characters, used in turn: 0 to 256; with --raw up to {MAX_FRAME} with the codes.  "
     f"[default: {','.join(map(str, DEFAULT_SIZES))}]",
 )
@@ -52,6 +55,7 @@ if TYPE_CHECKING:
     type=Several(click.Choice([pattern.value for pattern in Pattern])),
     default=",".join(pattern.value for pattern in Pattern),
     show_default=True,
+    metavar="NAME,…",
     help="Patterns of the characters, used in turn.",
 )
 @click.option(
@@ -80,8 +84,11 @@ if TYPE_CHECKING:
     metavar="START,END",
     help="Instead of 4E: texts between these codes, which a ladder program returns. Bytes in hex, or none.",
 )
-@click.option("--seed", type=int, default=0, show_default=True, help="Seed of the random pattern.")
+@click.option(
+    "--seed", type=int, default=0, show_default=True, metavar="N", help="Seed of the random pattern."
+)
 @report_option
+@without_effect("retries")
 @connection_options
 def loopback_command(
     connection: Connection,

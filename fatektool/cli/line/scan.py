@@ -11,7 +11,7 @@ from fatektool.address import default_format
 from fatektool.cli import INTERRUPTED
 from fatektool.cli.line.documents.linetest import scan_document, station_document
 from fatektool.cli.line.network import look_for_modules, network_option
-from fatektool.cli.shared.connection_options import connection_options
+from fatektool.cli.shared.connection_options import connection_options, without_effect
 from fatektool.cli.shared.options import ChoiceType, Several, type_of
 from fatektool.cli.shared.pairs import apart, together
 from fatektool.errors import UsageError
@@ -70,13 +70,14 @@ class Bauds(Several):
 
 @click.command(
     "scan",
-    epilog="Example: fatektool scan --bauds 9600,19200,38400 --formats 7E1,8N1 -p /dev/ttyUSB0",
+    epilog="Example: fatektool scan --stations 1-5 --protocols facon,mseries -p sim:",
 )
 @click.option(
     "--stations",
     type=Stations(),
     default="1-254",
     show_default=True,
+    metavar="N-N,N…",
     help="Stations to try; the first one with all settings, before the others.",
 )
 @click.option(
@@ -98,6 +99,7 @@ class Bauds(Several):
     help="Protocols to try.  [default: that of --protocol]",
 )
 @network_option
+@without_effect("station")
 @connection_options
 def scan_command(
     connection: Connection,

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 @click.command(
     "check",
     cls=PluginCommand,
-    epilog="Example: fatektool check -p /dev/ttyUSB0 --reference press.json --expect run",
+    epilog="Example: fatektool check -p sim: --reference press.json --expect any",
 )
 @click.option(
     "--expect",

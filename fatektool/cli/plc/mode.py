@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from fatektool.cli.shared.output import Voice
 
 
-@click.command("run", epilog="Example: fatektool run -p /dev/ttyUSB0 --yes")
+@click.command("run", epilog="Example: fatektool run -p sim: --yes")
 @broadcast_option
 @yes_option
 @connection_options
@@ -29,7 +29,7 @@ def run_command(connection: Connection, voice: Voice, *, broadcast: bool, yes: b
     _change(connection, voice, run=True, broadcast=broadcast, yes=yes)
 
 
-@click.command("stop", epilog="Example: fatektool stop -p /dev/ttyUSB0 --yes")
+@click.command("stop", epilog="Example: fatektool stop -p sim: --yes")
 @broadcast_option
 @yes_option
 @connection_options

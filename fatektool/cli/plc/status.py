@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from fatektool.protocol.status import System
 
 
-@click.command("status", epilog="Example: fatektool status -p /dev/ttyUSB0")
+@click.command("status", epilog="Example: fatektool status -p sim:")
 @click.option("--brief", is_flag=True, help="Only the brief status (40), the shortest exchange.")
 @connection_options
 def status_command(connection: Connection, voice: Voice, *, brief: bool) -> None:

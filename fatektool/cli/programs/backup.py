@@ -28,12 +28,12 @@ if TYPE_CHECKING:
     from fatektool.cli.shared.connection import Connection
 
 
-@click.command("backup", epilog="Example: fatektool backup press.json -p /dev/ttyUSB0 -s 3")
+@click.command("backup", epilog="Example: fatektool backup press-3.json -p sim: -s 3")
 @click.argument("file", required=False, type=PATH)
 @click.option(
     "--data",
     is_flag=True,
-    help="Save registers, relays, current values, disabled discretes and port settings too.",
+    help="Save registers, relays, disabled discretes, ports too.",
 )
 @click.option("--force", is_flag=True, help="Replace FILE if it exists.")
 @click.option("--single-pass", is_flag=True, help="Read once instead of twice; nothing is compared.")
@@ -60,9 +60,9 @@ def backup_command(
 ) -> int:
     """Read the PLC's program into FILE, with --data also its data.
 
-    Every page is read twice and compared, and the header is checked. Pages that are equal to those of an
-    existing backup are read once. FILE is written completely or not at all; without FILE its name has station
-    and time; - is standard output. The PLC can be in RUN.
+    Every page is read twice and compared, or once if it is as on file; the header is checked. FILE is written
+    completely or not at all; its default name has station and time; - is standard output. The PLC can be in
+    RUN.
     """
     path = file or Path(f"fatek-st{connection.address.station:02}-{stamp(utc())}.json")
     together("force", holds=not is_standard(path) or raw is not None, needs="a file")

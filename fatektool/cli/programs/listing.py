@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from fatektool.cli.shared.output import Voice
 
 
-@click.command("listing", epilog="Example: fatektool listing press.json --network 0-9 --comments press.pdw")
+@click.command("listing", epilog="Example: fatektool listing press.pdw --network 0-9")
 @click.argument("file", type=PATH)
 @click.option(
     "--network", "wanted", multiple=True, metavar="N|N-M", help="Only these networks; repeat for more."

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from fatektool.client import Plc
 
 
-@click.command("restore", epilog="Example: fatektool restore press.json -p /dev/ttyUSB0 --stop --run")
+@click.command("restore", epilog="Example: fatektool restore press.json -p sim: --stop --run --yes")
 @click.argument("file", type=PATH)
 @click.option("--stop", is_flag=True, help="STOP a running PLC. Make the machine safe first.")
 @click.option("--run", is_flag=True, help="RUN the PLC after the program is read back and verified.")

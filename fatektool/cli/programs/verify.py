@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from fatektool.cli.shared.output import Voice
 
 
-@click.command("verify", epilog="Example: fatektool verify press.json -p /dev/ttyUSB0 || mail the-team")
+@click.command("verify", epilog="Example: fatektool verify press.json -p sim: || echo changed")
 @click.argument("file", type=PATH)
 @comments_options
 @report_option

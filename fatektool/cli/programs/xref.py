@@ -30,7 +30,7 @@ _SAID = {
 _PLACES_SHOWN = 12
 
 
-@click.command("xref", epilog="Example: fatektool xref press.json M421 R100 --comments press.pdw")
+@click.command("xref", epilog="Example: fatektool xref press.pdw X0 Y0")
 @click.argument("file", type=PATH)
 @click.argument("elements", nargs=-1)
 @comments_options

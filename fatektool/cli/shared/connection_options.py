@@ -17,7 +17,7 @@ from fatektool.address import CHECKS, DEFAULT_FORMATS, DEFAULTS, PlcAddress
 from fatektool.checks import YesNo
 from fatektool.cli.shared.connection import Connection
 from fatektool.cli.shared.inventory_file import complete_target, inventory_option
-from fatektool.cli.shared.options import PATH, type_of, voice_options
+from fatektool.cli.shared.options import PATH, ConnectionOption, type_of, voice_options
 from fatektool.cli.shared.output import print_stderr
 from fatektool.errors import UsageError
 from fatektool.inventory.find import plc_named
@@ -59,6 +59,7 @@ class Row(NamedTuple):
         return click.option(
             *self.words,
             self.parameter,
+            cls=ConnectionOption,
             is_flag=is_flag,
             type=None if is_flag else PATH if check is None else type_of(check),
             default=None if self.old else default,
@@ -177,6 +178,18 @@ def _renamed(old: Row, rows: tuple[Row, ...], found: Mapping[str, Any]) -> None:
         raise UsageError(f"{name} and {old.words[0]} are the same option: give {name} alone")
     if sys.stderr.isatty():
         print_stderr(f"the line's {old.words[0]} is {name} now; {old.words[0]} still works")
+
+
+def without_effect(*parameters: str) -> Callable[[F], F]:
+    """Do not show options of the connection that have no effect here; above ``connection_options``."""
+
+    def decorate(function: F) -> F:
+        for option in getattr(function, "__click_params__", ()):
+            if option.name in parameters:
+                option.hidden = True
+        return function
+
+    return decorate
 
 
 def connection_options(function: F) -> F:

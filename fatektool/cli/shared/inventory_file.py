@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from fatektool.cli.shared.options import PATH
+from fatektool.cli.shared.options import PATH, ConnectionOption
 from fatektool.errors import FatektoolError
 from fatektool.inventory.find import FILE_NAME, VARIABLE, inventory_path, no_inventory, whole_inventory
 
@@ -23,6 +23,7 @@ F = TypeVar("F", bound="Callable[..., Any]")
 
 inventory_option = click.option(
     "--inventory",
+    cls=ConnectionOption,
     type=PATH,
     envvar=VARIABLE,
     metavar="FILE.toml",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+from functools import partial
 from itertools import chain
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -48,7 +49,7 @@ class LazyGroup(click.Group):
             return None
         module = importlib.import_module(f"fatektool.cli.{found.module}")
         command = getattr(module, f"{cmd_name}_command")
-        return command if isinstance(command, click.Command) else None
+        return _with_sections(command) if isinstance(command, click.Command) else None
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
@@ -68,6 +69,22 @@ class LazyGroup(click.Group):
         for heading, section in self.sections.items():
             with formatter.section(heading):
                 formatter.write_dl([(name, each.help) for name, each in section.items()])
+
+
+def _with_sections(command: click.Command) -> click.Command:
+    """A command whose help has its options in sections; those of a group of a file too."""
+    if isinstance(command, click.Group):
+        for each in command.commands.values():
+            _with_sections(each)
+    else:
+        command.format_options = partial(_write_options, command)  # type: ignore[method-assign]
+    return command
+
+
+def _write_options(command: click.Command, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+    from fatektool.cli.shared.help_sections import write_options  # for who asks for help
+
+    write_options(command, ctx, formatter)
 
 
 def commands(**named: Subcommand) -> Mapping[str, Mapping[str, Subcommand]]:

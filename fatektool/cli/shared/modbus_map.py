@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import click
 
+from fatektool.cli.shared.options import ConnectionOption
 from fatektool.errors import UsageError
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ def modbus_map_option(function: F) -> F:
 
     @click.option(
         "--modbus-map",
+        cls=ConnectionOption,
         metavar=_METAVAR,
         help=f"For a PLC with R3968 = A55AH; 'custom' asks it for R3968-R3980. {_FORMS}",
     )

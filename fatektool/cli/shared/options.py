@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from functools import wraps
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import click
 
@@ -16,6 +16,29 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 F = TypeVar("F", bound="Callable[..., Any]")
+
+CONNECTION: Final = "Connection"
+OUTPUT: Final = "Output"
+"""Sections of the help; an option that is of none is a command's own."""
+
+
+class ConnectionOption(click.Option):
+    """An option that says which PLC is meant, and how it is asked."""
+
+    section = CONNECTION
+
+
+class OutputOption(click.Option):
+    """An option that says what is printed."""
+
+    section = OUTPUT
+
+
+def section_of(parameter: click.Parameter) -> str:
+    """The section of the help that an option is in."""
+    if "--help" in parameter.opts:
+        return OUTPUT
+    return str(getattr(parameter, "section", "Options"))
 
 
 class FilePath(click.Path):
@@ -117,9 +140,13 @@ class Several(click.ParamType):  # type: ignore[type-arg]  # as above
 def voice_options(function: F) -> F:
     """``--json``, ``-q``, ``-v``; the command gets ``voice``."""
 
-    @click.option("--json", "as_json", is_flag=True, help="One JSON document on stdout, errors too.")
-    @click.option("-q", "--quiet", is_flag=True, help="Nothing on stderr but warnings and errors.")
-    @click.option("-v", "--verbose", is_flag=True, help="More on stderr.")
+    @click.option(
+        "--json", "as_json", cls=OutputOption, is_flag=True, help="One JSON document on stdout, errors too."
+    )
+    @click.option(
+        "-q", "--quiet", cls=OutputOption, is_flag=True, help="Nothing on stderr but warnings and errors."
+    )
+    @click.option("-v", "--verbose", cls=OutputOption, is_flag=True, help="More on stderr.")
     @wraps(function)
     def with_voice(*args: Any, as_json: bool, quiet: bool, verbose: bool, **rest: Any) -> Any:
         return function(*args, voice=Voice(as_json, quiet, verbose), **rest)

@@ -56,20 +56,27 @@ _DEFAULT_MODELS = ", ".join(f"{slave.model} with {name}" for name, slave in SLAV
 )
 @click.option("--protocol", type=click.Choice(list(PROTOCOLS)), default=DEFAULT, show_default=True)
 @click.option(
-    "--station", multiple=True, type=click.IntRange(1, 254), help="Station of a PLC; repeat for more."
+    "--station",
+    multiple=True,
+    type=click.IntRange(1, 254),
+    metavar="N",
+    help="Station of a PLC; repeat for more.",
 )
 @click.option(
     "--model",
     type=click.Choice(list(MODELS)),
     help=f"Model of the PLCs.  [default: {_DEFAULT_MODELS}]",
 )
-@click.option("--ladder-words", type=click.IntRange(1, 65535), help="Size of the program memory.")
+@click.option(
+    "--ladder-words", type=click.IntRange(1, 65535), metavar="N", help="Size of the program memory."
+)
 @click.option("--program", type=PATH, metavar="BACKUP", help="Program of the PLCs.")
 @click.option(
     "--program-seed",
     type=int,
     default=1,
     show_default=True,
+    metavar="N",
     help="Seed of the demonstration program, without --program.",
 )
 @click.option(
@@ -84,7 +91,10 @@ _DEFAULT_MODELS = ", ".join(f"{slave.model} with {name}" for name, slave in SLAV
     help="Set this state of the PLCs; repeat for more.",
 )
 @click.option(
-    "--baud", type=click.IntRange(50, 4_000_000), help="Baud rate: answers take as long as on such a line."
+    "--baud",
+    type=click.IntRange(50, 4_000_000),
+    metavar="N",
+    help="Baud rate: answers take their time on such a line.",
 )
 @click.option(
     "--strict-baud", is_flag=True, help="Understand a client of a pty only at the baud rate of --baud."
@@ -96,7 +106,9 @@ _DEFAULT_MODELS = ", ".join(f"{slave.model} with {name}" for name, slave in SLAV
     help=f"Bits per character, for --baud.  [default: {DEFAULT_FORMATS}]",
 )
 @click.option("--format", "old_format", hidden=True)
-@click.option("--scan-ms", type=click.FloatRange(0, 60_000), default=0.0, help="Time until an answer.")
+@click.option(
+    "--scan-ms", type=click.FloatRange(0, 60_000), default=0.0, metavar="MS", help="Time to answer."
+)
 @click.option(
     "--fault",
     multiple=True,
@@ -104,7 +116,7 @@ _DEFAULT_MODELS = ", ".join(f"{slave.model} with {name}" for name, slave in SLAV
     help=f"A fault with probability P: {', '.join(PROBABILITY_KINDS)}; bit-errors=P, for each byte;"
     " power-cut=N, at the N-th write of a page.",
 )
-@click.option("--seed", type=int, default=0, show_default=True, help="Seed of the faults.")
+@click.option("--seed", type=int, default=0, show_default=True, metavar="N", help="Seed of the faults.")
 @click.option(
     "--replay", type=PATH, metavar="TRACE", help="Answer as the PLC in TRACE, which --trace recorded."
 )

@@ -21,7 +21,9 @@ if TYPE_CHECKING:
     from fatektool.cli.shared.output import Voice
 
 
-@click.command("diff", epilog="Example: fatektool snapshot diff monday.json tuesday.json --ignore 'RT*'")
+@click.command(
+    "diff", epilog="Example: fatektool snapshot diff monday-data.json tuesday-data.json --ignore 'RT*'"
+)
 @click.argument("a", type=PATH)
 @click.argument("b", type=PATH)
 @click.option("--ignore", multiple=True, metavar="GLOB", help="Keys that are not compared; repeat for more.")
@@ -29,6 +31,7 @@ if TYPE_CHECKING:
     "--tolerance",
     type=click.FloatRange(0),
     default=0.0,
+    metavar="X",
     help="Largest difference of two numbers that is ignored.",
 )
 @voice_options

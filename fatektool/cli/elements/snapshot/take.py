@@ -63,7 +63,7 @@ def either_format(function: F) -> F:
 
 @click.command(
     "take",
-    epilog="Example: fatektool snapshot --spec press.toml -p /dev/ttyUSB0 --append press.ndjson --keep 90d",
+    epilog="Example: fatektool snapshot --spec press.toml -p sim: --append press.ndjson --keep 90d",
     help=f"Read data from the PLC and save it.\n\n{SELECTION}",
 )
 @click.argument("elements", nargs=-1)

@@ -16,7 +16,7 @@ from fatektool.cli.shared.lazy_group import LazyGroup, Subcommand, commands
         result=Subcommand("line.link.result", "Explain the result of the last transaction."),
         modem=Subcommand("line.link.modem", "Show and set the modem of port 1."),
     ),
-    epilog="Example: fatektool link ports -p /dev/ttyUSB0",
+    epilog="Example: fatektool link ports -p sim:",
 )
 def link_command() -> None:
     """The PLC's own communication ports, and the tables of CLINK (FUN151) and M-BUS (FUN150).

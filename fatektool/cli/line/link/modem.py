@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from fatektool.cli.shared.connection import Connection
 
 
-@click.group("modem", epilog="Example: fatektool link modem show -p /dev/ttyUSB0")
+@click.group("modem", epilog="Example: fatektool link modem show -p sim:")
 def modem_command() -> None:
     """The modem of port 1, as the PLC's registers set it.
 
@@ -39,7 +39,7 @@ def modem_command() -> None:
     """
 
 
-@modem_command.command("show", epilog="Example: fatektool link modem show -p /dev/ttyUSB0")
+@modem_command.command("show", epilog="Example: fatektool link modem show -p sim:")
 @connection_options
 def show_command(connection: Connection, voice: Voice) -> int:
     """Show phone number, dialling, auto answer and state of the modem."""
@@ -55,7 +55,7 @@ def show_command(connection: Connection, voice: Voice) -> int:
 
 
 @modem_command.command(
-    "set", epilog="Example: fatektool link modem set --number 02-28082192 --modem-on --tone -p /dev/ttyUSB0"
+    "set", epilog="Example: fatektool link modem set --number 02-28082192 --modem-on --tone -p sim: --yes"
 )
 @click.option("--number", metavar="NUMBER", help="To call: digits, ',' for a pause, '#', '*' (R4140-R4145).")
 @click.option("--modem-on/--modem-off", "on", default=None, help="A modem is on port 1, or not (R4149).")

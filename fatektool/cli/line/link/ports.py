@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from fatektool.cli.shared.connection import Connection
 
 
-@click.command("ports", epilog="Example: fatektool link ports -p /dev/ttyUSB0")
+@click.command("ports", epilog="Example: fatektool link ports -p sim:")
 @connection_options
 def ports_command(connection: Connection, voice: Voice) -> int:
     """Show the communication ports 1 to 4: state, protocol, time-outs, last result; high-speed link, modem.

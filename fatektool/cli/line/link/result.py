@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from fatektool.cli.shared.connection import Connection
 
 
-@click.command("result", epilog="Example: fatektool link result R100 --kind md0 -p /dev/ttyUSB0")
+@click.command("result", epilog="Example: fatektool link result R100 --kind md0 -p sim:")
 @click.argument("wr", metavar="WR")
 @click.option(
     "--kind",

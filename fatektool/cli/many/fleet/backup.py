@@ -31,9 +31,13 @@ if TYPE_CHECKING:
     from fatektool.program.archive import Backup
 
 
-@click.command("backup", epilog="Example: fatektool fleet backup --dir backups --on-failure send-alarm")
+@click.command("backup", epilog="Example: fatektool fleet backup --dir backups --on-failure 'echo failed:'")
 @click.option(
-    "--dir", "folder", type=PATH, help="Write DIR/NAME.json for each PLC, in place of the previous one."
+    "--dir",
+    "folder",
+    type=PATH,
+    metavar="DIR",
+    help="Write DIR/NAME.json for each PLC, in place of the previous one.",
 )
 @click.option(
     "--history",

@@ -17,7 +17,7 @@ from fatektool.cli.shared.lazy_group import LazyGroup, Subcommand, commands
         snapshot=Subcommand("many.fleet.snapshot", "Read each PLC's data, by its specification."),
         check=Subcommand("many.fleet.check", "Check the PLCs as one monitoring plugin."),
     ),
-    epilog="Example: fatektool fleet backup --dir backups --jobs 8 --select night",
+    epilog="Example: fatektool fleet backup --dir backups --jobs 8 --select hall",
 )
 def fleet_command() -> None:
     """Run a command for every PLC of the inventory, or for those of --select.

@@ -31,7 +31,12 @@ if TYPE_CHECKING:
 
 @click.command("snapshot", epilog="Example: fatektool fleet snapshot --dir snapshots --keep 30d")
 @click.option(
-    "--dir", "folder", type=PATH, required=True, help="Write a dated file for each PLC, in DIR/NAME/."
+    "--dir",
+    "folder",
+    type=PATH,
+    required=True,
+    metavar="DIR",
+    help="Write a dated file for each PLC, in DIR/NAME/.",
 )
 @click.option("--keep", metavar="N|DAYSd", help="Keep N snapshots of each PLC, or those of so many days.")
 @alarm_options(changes=False)

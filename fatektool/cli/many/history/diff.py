@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from fatektool.cli.shared.output import Voice
 
 
-@click.command("diff", epilog="Example: fatektool history diff press-3 2026-11-01 --history plc-history")
+@click.command("diff", epilog="Example: fatektool history diff press-3 ~1 --history plc-history")
 @click.argument("name")
 @click.argument("a", required=False, default="~1")
 @click.argument("b", required=False, default="HEAD")

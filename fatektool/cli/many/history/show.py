@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from fatektool.cli.shared.output import Voice
 
 
-@click.command("show", epilog="Example: fatektool history show press-3@2026-11-22 --history plc-history")
+@click.command("show", epilog="Example: fatektool history show press-3@~1 --history plc-history")
 @click.argument("which", metavar="NAME[@REV]")
 @history_option
 @voice_options

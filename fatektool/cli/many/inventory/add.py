@@ -30,13 +30,13 @@ _MAX_SCAN: Final = 4 << 20
 
 @click.command(
     "add",
-    epilog="Example: fatektool scan -p /dev/ttyUSB0 --json | fatektool inventory add hall1 --from -",
+    epilog="Example: fatektool scan -p sim: --json | fatektool inventory add hall1 --from -",
 )
 @click.argument("name")
 @click.option(
     "--from", "scan", type=PATH, metavar="FILE|-", help="Output of 'scan --json': add each station."
 )
-@click.option("--tag", "tags", multiple=True, help="A word for --select; repeat for more.")
+@click.option("--tag", "tags", multiple=True, metavar="WORD", help="A word for --select; repeat for more.")
 @address_options(_ROWS)
 @inventory_option
 @voice_options

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from fatektool.inventory.entries import PlcEntry
 
 
-@click.command("list", epilog="Example: fatektool inventory list --select night")
+@click.command("list", epilog="Example: fatektool inventory list --select hall")
 @click.option("--select", "words", multiple=True, metavar="NAME|TAG|GLOB", help="Only these PLCs.")
 @inventory_option
 @voice_options

@@ -29,7 +29,7 @@ _INTERVAL_S: Final = 1.0
 _INTERVAL_ON_SCREEN_S: Final = 0.25
 
 
-@click.command("monitor", epilog="Example: fatektool monitor press.json --network 0-9 -p /dev/ttyUSB0")
+@click.command("monitor", epilog="Example: fatektool monitor press.pdw --network 0-9 -p sim: --count 1")
 @click.argument("file", type=PATH)
 @click.option("--network", "wanted", multiple=True, metavar="N|N-M", help="Only these networks; repeat it.")
 @click.option("--why", metavar="ELEMENT", help="Say why ELEMENT is on or off, once.")
@@ -39,7 +39,9 @@ _INTERVAL_ON_SCREEN_S: Final = 0.25
     metavar="S",
     help="From round to round; by default 0.25 on a terminal, else 1.",
 )
-@click.option("--count", type=click.IntRange(1), help="So many rounds; by default until q or Ctrl-C.")
+@click.option(
+    "--count", type=click.IntRange(1), metavar="N", help="So many rounds; by default until q or Ctrl-C."
+)
 @comments_options
 @connection_options
 def monitor_command(

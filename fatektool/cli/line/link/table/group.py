@@ -16,7 +16,7 @@ from fatektool.cli.shared.lazy_group import LazyGroup, Subcommand, commands
         save=Subcommand("line.link.table.show", "Save a table of the PLC to a file."),
         write=Subcommand("line.link.table.write", "Write a table from a file into the PLC."),
     ),
-    epilog="Example: fatektool link table show R5000 --kind md0 -p /dev/ttyUSB0",
+    epilog="Example: fatektool link table show R500 --kind md0 -p sim:plc.state",
 )
 def table_command() -> None:
     """Communication tables: the requests of the instructions CLINK and M-BUS.

@@ -42,7 +42,7 @@ def kind_option(function: F) -> F:
     )(function)
 
 
-@click.command("show", epilog="Example: fatektool link table show R5000 --kind mbus -p /dev/ttyUSB0 --check")
+@click.command("show", epilog="Example: fatektool link table show R500 --kind md0 -p sim:plc.state --check")
 @click.argument("sr", metavar="SR")
 @kind_option
 @click.option("--check", is_flag=True, help="Exit 1 if the table has faults.")
@@ -61,7 +61,7 @@ def show_command(sr: str, connection: Connection, voice: Voice, *, kind: str, ch
     return int(check and bool(faults))
 
 
-@click.command("check", epilog="Example: fatektool link table check press.toml")
+@click.command("check", epilog="Example: fatektool link table check table.toml")
 @click.argument("file", type=PATH)
 @voice_options
 def check_command(file: Path, voice: Voice) -> int:
@@ -76,7 +76,7 @@ def check_command(file: Path, voice: Voice) -> int:
 
 
 @click.command(
-    "save", epilog="Example: fatektool link table save R5000 press.toml --kind md0 -p /dev/ttyUSB0"
+    "save", epilog="Example: fatektool link table save R500 again.toml --kind md0 -p sim:plc.state"
 )
 @click.argument("sr", metavar="SR")
 @click.argument("file", type=PATH)

@@ -40,9 +40,7 @@ if TYPE_CHECKING:
     from fatektool.plcports.tables import Table
 
 
-@click.command(
-    "write", epilog="Example: fatektool link table write press.toml R5000 -p /dev/ttyUSB0 --dry-run"
-)
+@click.command("write", epilog="Example: fatektool link table write table.toml R500 -p sim: --dry-run")
 @click.argument("file", type=PATH)
 @click.argument("sr", metavar="SR")
 @click.option("--force", "faulty", is_flag=True, help="Write a table that has faults.")
