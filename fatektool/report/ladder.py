@@ -1,7 +1,7 @@
-"""Networks as ladders in SVG, each part where the text drawing has it: at a line and a column of characters.
+"""Networks as ladders in SVG, each part at the same line and column of characters as in the text drawing.
 
-Every drawing is one image for a screen reader, named after its network; a table beside it has the
-instructions. The parts keep their size: a narrow window scrolls over a wide drawing.
+For a screen reader, every drawing is one image with the name of its network; a table has the instructions.
+The parts keep their size: in a narrow window, a wide drawing scrolls.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ if TYPE_CHECKING:
     from fatektool.ladder.networks import Network
 
 WIDE: Final = 88
-"""The columns of a drawing that has the page for itself."""
+"""The columns of a drawing with the full width of the page."""
 HALF: Final = 62
-"""Those of one of two side by side."""
+"""The columns of one of two drawings side by side."""
 _COLUMN: Final = 8
 _LINE: Final = 18
 _EDGE: Final = 12
@@ -37,7 +37,7 @@ _PEN: Final = Pen(Letters())
 
 
 class DiffMark(StrEnum):
-    """What became of an instruction between two programs."""
+    """The change of an instruction between two programs."""
 
     ADDED = "added"
     REMOVED = "removed"
@@ -53,13 +53,13 @@ def ladder(
     columns: int = WIDE,
     marks: Mapping[int, DiffMark] | None = None,
 ) -> Html | None:
-    """A network drawn; None if it cannot be.
+    """The drawing of a network; None if it cannot be drawn.
 
     Args:
-        network: it.
-        comments: of elements, to stand under them.
+        network: the network.
+        comments: of elements, drawn under them.
         name: the image's id.
-        columns: how wide it may be, in characters.
+        columns: the maximum width, in characters.
         marks: the instructions that were added or removed.
     """
     circuit = circuit_of(network)
@@ -76,14 +76,14 @@ def ladder(
 
 
 def not_drawn(network: Network) -> Html:
-    """Why a network cannot be drawn."""
+    """The reason why a network cannot be drawn."""
     circuit = circuit_of(network)
     assert isinstance(circuit, NoCircuit)  # noqa: S101  # the caller's condition
     return note(f"Not drawn: {circuit.reason} (instruction {circuit.number:04}).")
 
 
 class _Picture:
-    """An image in the making.
+    """An image that is being drawn.
 
     Args:
         marks: the instructions that were added or removed.
@@ -99,16 +99,16 @@ class _Picture:
         self._parts: list[Html] = []
 
     def begin(self, line: int) -> None:
-        """Go on below: what comes next begins at this line."""
+        """Continue below, from this line on."""
         self._top = line
 
     def image(self, name: str, title: str, lines: int) -> Html:
-        """All of it.
+        """The complete image.
 
         Args:
             name: its id.
-            title: what it is.
-            lines: how many it has.
+            title: of the image.
+            lines: its number of lines.
         """
         width, height = self._widest + _EDGE, lines * _LINE + 2 * _EDGE
         drawn = tag(
@@ -186,7 +186,7 @@ class _Picture:
         self._text(x, self._y(line), text, anchor, "" if quiet else "strong")
 
     def _inside(self, x: float, y: float, inside: str) -> None:
-        """What stands in a sign."""
+        """The text or arrow in a sign."""
         if inside == "/":
             self._signs.append(f"M{x - 4:g} {y + 6}l8 -12")
         elif inside in {_PEN.rising, _PEN.falling}:

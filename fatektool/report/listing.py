@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 _SAID = {
     "A": "",
-    "B": "read from use, not the vendor's own word",
-    "C": "a guess that fits, not the vendor's own word",
+    "B": "found from its use, not the vendor's name",
+    "C": "assumed, not the vendor's name",
 }
 
 
@@ -26,7 +26,7 @@ def listing_report(document: Mapping[str, Any], networks: Sequence[Network], *, 
 
     Args:
         document: ``fatektool.listing/1``.
-        networks: the same networks, to be drawn.
+        networks: the same networks, for the drawings.
         time: the present, UTC, RFC 3339.
     """
     header = document["header"]
@@ -62,8 +62,8 @@ def _legend() -> Html:
     return section(
         "How to read it",
         note(
-            "The text is as the vendor's program prints it. What has ~ before it is not its own word: it was "
-            "read from use. What has ?? before it is not known: its words are shown in hex."
+            "The text is as the vendor's software prints it. A name with ~ is not the vendor's: it was found "
+            "from its use. ?? marks code that is not known: its words are shown in hex."
         ),
     )
 
@@ -93,7 +93,7 @@ def _networks(document: Mapping[str, Any], networks: Sequence[Network]) -> Itera
 def _drawn(
     network: Network, comments: Mapping[str, str], rows: Sequence[Sequence[object]]
 ) -> tuple[Html, Html]:
-    """A network's ladder with its instructions to open; if it cannot be drawn, the reason and the table."""
+    """A network's ladder and its instructions, folded; if it cannot be drawn, the reason and the table."""
     listed = table(
         f"Network {network.name}", ("Number", "Instruction", "Comments", "Evidence"), rows, numeric=(0,)
     )

@@ -1,4 +1,4 @@
-"""``loopback``: how good a line is. Verdict and limits, errors by kind, times, sizes, and what to do."""
+"""``loopback``: the quality of a line. Result and limits, errors by kind, times, sizes, and what to do."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 _KINDS: Final = {
     "timeout": "no answer in time",
     "checksum": "answer with a wrong checksum",
-    "garbled": "bytes that are no answer",
-    "mismatch": "answer that is not what was sent",
-    "stale": "late answer to an earlier question",
+    "garbled": "bytes without a valid frame",
+    "mismatch": "answer with other data than sent",
+    "stale": "late answer to an earlier request",
     "refused": "refused by the PLC",
 }
 _TIMES: Final = {
@@ -30,8 +30,8 @@ _TIMES: Final = {
 }
 _MARKED: Final = ("p50", "p99")
 _ENDS: Final = {
-    "interrupted": " The test was interrupted: these are the figures until then.",
-    "line lost": " The line was lost: these are the figures until then.",
+    "interrupted": " The test was interrupted: the numbers are those until then.",
+    "line lost": " The line was lost: the numbers are those until then.",
 }
 
 
@@ -64,7 +64,7 @@ def loopback_report(document: Mapping[str, Any]) -> str:
 def _verdict(document: Mapping[str, Any]) -> Verdict:
     good = document["verdict"] == "pass"
     errors = document["sent"] - document["ok"]
-    said = f"{document['ok']} of {document['sent']} loopbacks came back right"
+    said = f"{document['ok']} of {document['sent']} loopbacks were answered correctly"
     said += f", {percent(document['error_rate'])} did not." if errors else "."
     limits = document["limits"]
     asked = []
@@ -73,7 +73,7 @@ def _verdict(document: Mapping[str, Any]) -> Verdict:
     if limits["max_p99_ms"] is not None:
         asked.append(f"p99 at most {limits['max_p99_ms']:g} ms")
     if asked:
-        said += f" Asked for: {', '.join(asked)}."
+        said += f" Limits: {', '.join(asked)}."
     said += _ENDS.get(document["ended"], "")
     return Verdict("Pass" if good else "Fail", said, good=good)
 
@@ -86,7 +86,7 @@ def _facts(document: Mapping[str, Any], where: str) -> list[tuple[str, object]]:
         ("Time", when(document["time"])),
         ("Duration", figure(document["duration_s"], unit="s")),
         ("Sent", figure(document["sent"])),
-        ("Came back right", figure(document["ok"])),
+        ("Answered correctly", figure(document["ok"])),
         ("Error rate", figure(document["error_rate"], percent(document["error_rate"]))),
         (
             "Error rate, at most (95 %)",
@@ -123,7 +123,7 @@ def _times(document: Mapping[str, Any]) -> Html:
 def _histogram(document: Mapping[str, Any]) -> list[Html]:
     buckets = document["histogram"]
     if not buckets:
-        return [note("Nothing came back: there are no times to show.")]
+        return [note("There was no answer: there are no times to show.")]
     marks = [
         (place, f"{name} {value:.4g} ms")
         for name in _MARKED
@@ -133,7 +133,7 @@ def _histogram(document: Mapping[str, Any]) -> list[Html]:
     data = Columns(
         [f"{bucket['from_ms']:.3g}" for bucket in buckets],
         [bucket["count"] for bucket in buckets],
-        "whole exchange, ms: where each column begins",
+        "whole exchange, ms: lower limit of each column",
         marks,
     )
     caption = "Loopbacks by time"
@@ -198,7 +198,7 @@ def _diagnosis(found: Sequence[Mapping[str, Any]]) -> list[Html]:
     for each in found:
         parts += [
             tag("h3", f"{'Fault' if each['fault'] else 'Note'}: {each['finding']}"),
-            tag("p", f"Seen: {each['evidence']}"),
+            tag("p", f"Measured: {each['evidence']}"),
             tag("p", tag("strong", "What to do: "), each["advice"]),
             tag("p", f"Rule {each['rule']}", class_="what"),
         ]

@@ -1,8 +1,8 @@
-"""Text becomes HTML here and nowhere else: what is no ``Html`` yet is escaped.
+"""The conversion of text to HTML: everything that is not yet ``Html`` is escaped.
 
-A name from a PLC's file, a target, an error message may hold anything. ``<>&"'`` become references. What has
-no picture of its own (control characters, marks that turn the direction of writing, halves of a character) is
-shown as Python escapes it, so that nothing looks like what it is not.
+A name from a file, a target or an error message may contain any characters. ``<>&"'`` become references.
+Characters without a visible form (control characters, marks for the direction of writing, surrogates) are
+shown as Python escapes them, so that no text can be misleading.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ class Html(str):
 
 
 NEWLINE: Final = Html("\n")
-"""Between elements, so that a person can read the source, and a mail programme break its lines."""
+"""Between elements, so that the source is readable and a mail program can break its lines."""
 
 
 def escape(text: str) -> Html:
-    """Text as HTML shows it, in an element or in a quoted attribute."""
+    """Text escaped for an element or a quoted attribute."""
     if not text.isprintable():
         text = "".join(each if each.isprintable() else _as_escape(each) for each in text)
     return Html(html.escape(text))
@@ -41,7 +41,7 @@ def _as_escape(character: str) -> str:
 
 
 def markup(content: object) -> Html:
-    """Anything as HTML: ``Html`` as it is, everything else as escaped text."""
+    """Anything as HTML: ``Html`` unchanged, everything else as escaped text."""
     return content if isinstance(content, Html) else escape(str(content))
 
 
@@ -55,9 +55,9 @@ def tag(name: str, /, *content: object, **attributes: object) -> Html:
 
     Args:
         name: ``p``, ``rect``.
-        content: what is in it.
-        attributes: ``class_`` is ``class``, ``aria_label`` is ``aria-label``. One that is None is left out,
-            one that is True has no value.
+        content: its contents.
+        attributes: ``class_`` is ``class``, ``aria_label`` is ``aria-label``. An attribute that is None is
+            omitted, one that is True has no value.
     """
     shown = "".join(_attribute(key, value) for key, value in attributes.items() if value is not None)
     if name in _VOID:
@@ -71,12 +71,12 @@ def _attribute(name: str, value: object) -> str:
 
 
 def figure(value: object, shown: str | None = None, unit: str = "") -> Html:
-    """A figure of the document: what JSON has in the ``value`` of ``<data>``, and as people read it.
+    """A value of the document: as in JSON in the ``value`` of ``<data>``, and as text.
 
     Args:
-        value: as the document has it: a number, a truth, a text, None.
-        shown: how it is written; by default the value itself, seven digits of a float, a dash for None.
-        unit: what follows it.
+        value: as in the document: a number, true or false, a text, None.
+        shown: the text; by default the value itself, seven digits of a float, a dash for None.
+        unit: after the value.
     """
     if shown is None:
         shown = plain(value)
@@ -85,7 +85,7 @@ def figure(value: object, shown: str | None = None, unit: str = "") -> Html:
 
 
 def plain(value: object) -> str:
-    """A value as people read it."""
+    """A value as text."""
     match value:
         case None:
             return DASH
@@ -98,7 +98,7 @@ def plain(value: object) -> str:
 
 
 def when(time: str | None) -> Html:
-    """A time of a document, RFC 3339 in UTC, as people read it."""
+    """A time of a document, RFC 3339 in UTC, as text."""
     if time is None:
         return escape(DASH)
     return tag("time", f"{time.removesuffix('Z').replace('T', ' ')} UTC", datetime=time)
@@ -117,14 +117,14 @@ def table(
     numeric: Iterable[int] = (),
     scroll: bool | None = None,
 ) -> Html:
-    """A table; the first cell of a row names it.
+    """A table; the first cell of a row is its name.
 
     Args:
-        caption: what it shows.
-        head: the columns' names.
-        rows: their cells.
+        caption: of the table.
+        head: the names of the columns.
+        rows: the cells.
         numeric: the columns that are aligned right.
-        scroll: in a narrow window the table moves, not the page; by default one of many columns.
+        scroll: in a narrow window the table scrolls, not the page; by default if it has many columns.
     """
     right = set(numeric)
     classes = ["n" if number in right else None for number in range(len(head))]

@@ -1,4 +1,4 @@
-"""Networks that differ between two programs: both sides drawn, then the instructions as a unified diff."""
+"""Networks that differ between two programs: drawings of both, then the instructions as a unified diff."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from fatektool.ladder.networks import Network
 
 MOST_DRAWN: Final = 200
-_SIGNS: Final = {"-": "removed", "+": "added", " ": "as before"}
+_SIGNS: Final = {"-": "removed", "+": "added", " ": "unchanged"}
 
 
 def changed_networks(
@@ -29,17 +29,17 @@ def changed_networks(
 
     Args:
         networks: of the document.
-        changes: the same to be drawn; empty for none.
+        changes: the same, for the drawings; empty for none.
         comments: of elements.
-        sides: what the two programs are called.
+        sides: the names of the two programs.
     """
     said: list[Html] = []
     if changes:
         said.append(
             tag(
                 "p",
-                f"What is only in {sides[0]} has a dashed frame and a minus, what is only in {sides[1]} a "
-                "frame and a plus.",
+                f"Instructions only in {sides[0]} have a dashed frame and a minus, those only in "
+                f"{sides[1]} a frame and a plus.",
             )
         )
     if len(changes) > MOST_DRAWN:

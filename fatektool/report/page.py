@@ -1,14 +1,14 @@
-"""The frame of every report: one HTML file that asks nothing of anybody.
+"""The common parts of all reports: one HTML file that loads nothing.
 
 ::
 
     head      title, policy, style sheet
-    header    what · where · verdict · facts
+    header    what · where · result · facts
     main      sections
-    footer    the tool's version, the document's schema, when
+    footer    the tool's version, the document's schema, the time
 
-No script, no picture, no font is loaded: the policy in its head lets nothing in but the one style sheet, by
-its hash. So a report that came by mail can be opened without a second thought.
+No script, picture or font is loaded: the policy in its head allows only its style sheet, by the hash. So a
+report received by mail is safe to open.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ LONGEST_START: Final = 200
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """What a report comes to, in a word and a sentence.
+    """The result of a report, as a word and a sentence.
 
     Attributes:
         word: ``Same``, ``Fail``.
-        said: the rest.
-        good: True and False have a colour of their own; None is neither.
+        said: the sentence.
+        good: True and False have their own colours; None is neutral.
     """
 
     word: str
@@ -46,16 +46,16 @@ class Verdict:
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """What is in the frame.
+    """The contents of a report.
 
     Attributes:
-        title: what it is.
-        what: of what, from where.
-        verdict: what it comes to.
-        facts: names and what is under them.
+        title: of the report.
+        what: its subject and source.
+        verdict: the result.
+        facts: names and values.
         sections: the rest, each made by ``section``.
-        schema: the document that the figures are from.
-        time: when they were read, UTC, RFC 3339.
+        schema: of the document with the numbers.
+        time: of the reading, UTC, RFC 3339.
     """
 
     title: str
@@ -68,7 +68,7 @@ class Report:
 
 
 def render(report: Report) -> str:
-    """The whole file, its last line closed."""
+    """The complete file, with a line end at the end."""
     head = tag(
         "head",
         tag("meta", charset="utf-8"),
@@ -95,7 +95,7 @@ def render(report: Report) -> str:
 
 
 def is_report(start: str) -> bool:
-    """True if a file that begins so is a report of ours.
+    """True if a file with this beginning is a report of this program.
 
     Args:
         start: its first ``LONGEST_START`` characters or more.
@@ -104,12 +104,12 @@ def is_report(start: str) -> bool:
 
 
 def section(heading: str, *content: object, id_: str | None = None) -> Html:
-    """A section under its heading."""
+    """A section with its heading."""
     return tag("section", tag("h2", heading), *content, id=id_)
 
 
 def facts(pairs: Iterable[tuple[str, object]]) -> Html:
-    """Names and what is under them, side by side; a long one has a line of its own."""
+    """Names and values, side by side; a long one has its own line."""
     return tag(
         "dl",
         *(
@@ -125,10 +125,10 @@ def note(text: str) -> Html:
 
 
 def chart(caption: str, svg: Html, figures: Html) -> Html:
-    """A chart with its figures as a table, to open.
+    """A chart with its numbers as a folded table.
 
     Args:
-        caption: what it shows.
+        caption: of the chart.
         svg: the chart.
         figures: the table.
     """
@@ -141,5 +141,5 @@ def chart(caption: str, svg: Html, figures: Html) -> Html:
 
 
 def code(text: str) -> Html:
-    """Something to be copied: a hash, a path."""
+    """A text to copy: a hash, a path."""
     return tag("code", escape(text))

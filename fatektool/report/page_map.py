@@ -1,4 +1,4 @@
-"""The map of a program: a cell for each page, the header first, the changed ones filled and crossed."""
+"""The map of a program: a cell for each page, the header first; changed pages are filled and crossed."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ _APART: Final = 130
 
 
 def page_map(name: str, title: str, pages: int, changed: Mapping[int, int | None]) -> Html:
-    """Draw it.
+    """Draw the map.
 
     Args:
         name: its id.
-        title: what it shows.
-        pages: how many pages there are, the header page included.
-        changed: the pages that differ, and in how many words; None for a page that one side does not have.
+        title: of the map.
+        pages: the number of pages, including the header page.
+        changed: the pages that differ, with the number of words; None for a page that only one side has.
     """
     rows = -(-pages // _COLUMNS)
     same = "".join(f"M{x} {y}{_box()}" for x, y in map(_place, range(pages)))
@@ -66,7 +66,7 @@ def _box() -> str:
 
 
 def _marked(x: int, y: int, said: str, *, lone: bool = False) -> Html:
-    """A marked cell: filled with a cross in it, or a slash alone."""
+    """A marked cell: filled with a cross in it, or only a slash."""
     if lone:
         shape = tag("path", d=f"M{x} {y}{_box()}M{x} {y + _CELL}l{_CELL} -{_CELL}")
         return tag("g", tag("title", said), shape, class_="lone")
@@ -77,7 +77,7 @@ def _marked(x: int, y: int, said: str, *, lone: bool = False) -> Html:
 
 
 def _key(number: int, bottom: int, said: str, cell: Html) -> Html:
-    """A line of the legend: a cell, and what it means."""
+    """A line of the legend: a cell and its meaning."""
     return join([cell, label(_LEFT + number * _APART + _PITCH + 4, bottom + 10 + _CELL - 2, said)])
 
 

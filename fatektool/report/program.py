@@ -1,7 +1,7 @@
 """``verify`` and ``diff``: a map of the pages, what changed, and the words of both sides in hex.
 
-The figures are the document's. The words that did not change are not in it, so the first program is given
-with it; the second follows from the two, but for pages that the first does not have.
+The numbers are those of the document. It does not have the unchanged words, so the first program is given
+too; the second follows from both, except pages that the first does not have.
 """
 
 from __future__ import annotations
@@ -33,12 +33,12 @@ def verify_report(
     changes: Sequence[NetworkChange] = (),
     comments: Mapping[str, str] | None = None,
 ) -> str:
-    """The PLC's program against a backup.
+    """The comparison of the PLC's program with a backup.
 
     Args:
         document: ``fatektool.verify/1``.
-        program: the backup's.
-        changes: the networks that differ, to be drawn.
+        program: of the backup.
+        changes: the networks that differ, for the drawings.
         comments: of elements.
     """
     where = f"station {document['station']} on {document['target']}"
@@ -64,14 +64,14 @@ def diff_report(
     changes: Sequence[NetworkChange] = (),
     comments: Mapping[str, str] | None = None,
 ) -> str:
-    """Two backups against each other.
+    """The comparison of two backups.
 
     Args:
         document: ``fatektool.diff/1``.
         a: the first program.
         b: the second.
         time: the present, UTC, RFC 3339.
-        changes: the networks that differ, to be drawn.
+        changes: the networks that differ, for the drawings.
         comments: of elements.
     """
     facts: list[tuple[str, object]] = []
@@ -99,11 +99,11 @@ def _report(
 
     Args:
         document: either.
-        programs: the first, and the second where it is at hand.
-        sides: what the two are called.
-        names: title, what of, and when.
-        facts: what is at the top, before the sizes.
-        networks: the section on those that differ.
+        programs: the first, and the second if it is known.
+        sides: the names of the two.
+        names: title, subject and time.
+        facts: the first ones, before the sizes.
+        networks: the section with those that differ.
     """
     title, what, time = names
     sizes = document["a_ladder_words"], document["b_ladder_words"]
@@ -150,7 +150,7 @@ def _verdict(document: Mapping[str, Any], sides: tuple[str, str], pages: int) ->
 
 
 def _pages(document: Mapping[str, Any], programs: tuple[Program, Program | None]) -> int:
-    """How many pages the larger of the two has."""
+    """The number of pages of the larger one."""
     a, b = programs
     if b is not None:
         return max(len(a.pages), len(b.pages))
@@ -162,7 +162,7 @@ def _map(document: Mapping[str, Any], pages: int) -> Html:
     if not document["differences"] and not document["same"]:
         return section(
             "Map of the pages",
-            note("The sizes differ: the PLC's pages were not read, as they cannot be the ones on file."),
+            note("The ladder sizes differ, so the program is another one: the PLC's pages were not read."),
         )
     changed = {page["page"]: len(page["words"]) or None for page in document["differences"]}
     said = "The program's header comes first. A page is 64 words."
@@ -171,14 +171,14 @@ def _map(document: Mapping[str, Any], pages: int) -> Html:
 
 
 def _differing(document: Mapping[str, Any]) -> object:
-    """How many pages differ, and which."""
+    """The number of pages that differ, and which."""
     numbers = [page["page"] for page in document["differences"]]
     count = figure(document["pages_differ"])
     return tag("span", count, f": {ranges(numbers)}") if len(numbers) > 1 else count
 
 
 def _changes(document: Mapping[str, Any], sides: tuple[str, str]) -> Html:
-    """A row for each page, or for neighbours in which the same words differ."""
+    """A row for each page, or for consecutive pages in which the same words differ."""
     rows = []
     position = 0
     for run in _runs(document["differences"]):
@@ -197,7 +197,7 @@ def _changes(document: Mapping[str, Any], sides: tuple[str, str]) -> Html:
 
 
 def _runs(pages: Sequence[Mapping[str, Any]]) -> list[list[Mapping[str, Any]]]:
-    """Neighbours in which the same words differ, together."""
+    """Consecutive pages in which the same words differ, as groups."""
     runs: list[list[Mapping[str, Any]]] = []
     for page in pages:
         last = runs[-1][-1] if runs else None
@@ -268,7 +268,7 @@ def _side(caption: str, words: Sequence[str] | None, changed: Mapping[int, Any])
 
 
 def _list(page: Mapping[str, Any], sides: tuple[str, str]) -> Html:
-    """What changed, word by word: for those who do not see the marks, and for copying."""
+    """The changes, word by word: for readers who do not see the marks, and for copying."""
     rows = [(figure(word["word"]), tag("code", word["a"]), tag("code", word["b"])) for word in page["words"]]
     caption = f"Page {page['page']}, the words that differ"
     return tag("details", tag("summary", caption), table(caption, ("Word", *sides), rows, numeric=(0,)))

@@ -1,8 +1,8 @@
-"""The rounds of a series, however many: figures of all of them, points of some.
+"""The rounds of a series, of any length: numbers of all of them, points of some.
 
-A night of ``watch`` is a hundred thousand rounds. Least, most, mean, last, changes and gaps are kept of every
-round as it comes; of the points for the charts every second one is dropped, evenly, whenever there are too
-many. So memory and report have a bound, and the figures hold none the less.
+A night of ``watch`` has a hundred thousand rounds. Minimum, maximum, mean, last value, changes and gaps
+include every round. Of the points for the charts, every second one is dropped when there are too many. So
+memory and report are limited, and the numbers are still right.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ _LEAST_POINTS: Final = 2
 
 @dataclass(slots=True)
 class Track:
-    """One key's values, as far as its rounds have come.
+    """The values of one key so far.
 
     Attributes:
-        part: what the document says of its element: element, type, unit; the last that was said.
-        read: in how many rounds it was read.
-        failed: in how many it was not.
-        least: the smallest number; None without any.
+        part: element, type and unit in the last document.
+        read: the number of rounds in which it was read.
+        failed: the number of rounds in which it was not.
+        least: the smallest number; None if there is none.
         most: the largest.
-        mean: of the numbers; None without any.
+        mean: of the numbers; None if there is none.
         last: the last value that was read.
-        changes: how often a value was another than the one before.
+        changes: the number of values that differ from the one before.
     """
 
     part: Mapping[str, Any] = field(default_factory=dict)
@@ -46,7 +46,7 @@ class Track:
     _numbers: int = 0
 
     def add(self, value: Any) -> None:
-        """Take a round's value; None for none."""
+        """Add the value of a round; None for none."""
         if value is None:
             self.failed += 1
             return
@@ -58,7 +58,7 @@ class Track:
             count = self._numbers
             self.least = value if self.least is None else min(self.least, value)
             self.most = value if self.most is None else max(self.most, value)
-            # By parts: a sum of doubles may be past the largest one.
+            # By parts: a sum of doubles may be larger than the largest double.
             self.mean = float(value) if self.mean is None else self.mean + (value / count - self.mean / count)
 
 
@@ -67,11 +67,11 @@ class Gap:
     """Rounds in a row without a value.
 
     Attributes:
-        key: whose; None for a round of which nothing was read.
-        first: the first round's time, UTC, RFC 3339.
-        last: the last round's.
-        rounds: how many.
-        reason: why, of all of them.
+        key: of the value; None for rounds of which nothing was read.
+        first: time of the first round, UTC, RFC 3339.
+        last: time of the last round.
+        rounds: their number.
+        reason: the same for all of them.
     """
 
     key: str | None
@@ -83,7 +83,7 @@ class Gap:
 
 @dataclass(frozen=True, slots=True)
 class KeptRound:
-    """A round that is kept for the charts; ``values`` is empty for one of which nothing was read."""
+    """A round that is kept for the charts; ``values`` is empty if nothing was read."""
 
     time_s: float
     values: Mapping[str, Any]
@@ -93,20 +93,20 @@ class Rounds:
     """A series, round by round.
 
     Args:
-        most_points: of so many rounds points are kept.
-        most_cells: of so few rounds that their values are no more than this.
+        most_points: the most rounds whose points are kept.
+        most_cells: the most values of these rounds.
 
     Attributes:
         count: rounds that were read.
         lost: rounds of which nothing was read.
-        tracks: by key, in the order in which the keys came.
-        gaps: the first ``MOST_GAPS``, in the order of their beginning.
-        gaps_in_all: how many there were.
-        stride: every so manieth round is kept; 1 for all.
-        last: the last document, None without any.
-        first_time: when the first round was, read or not; None without any.
+        tracks: by key, in the order in which the keys occurred first.
+        gaps: the first ``MOST_GAPS``, by their beginning.
+        gaps_in_all: their total number.
+        stride: one of ``stride`` rounds is kept; 1 for all.
+        last: the last document; None if there is none.
+        first_time: the time of the first round, read or not; None if there is none.
         last_time: the same of the last.
-        mode_changes: how often RUN and STOP changed.
+        mode_changes: the number of changes between RUN and STOP.
     """
 
     def __init__(self, *, most_points: int = MOST_POINTS, most_cells: int = MOST_CELLS) -> None:
@@ -126,10 +126,10 @@ class Rounds:
         self._open: dict[str | None, Gap] = {}
 
     def add(self, document: Mapping[str, Any]) -> None:
-        """Take a round.
+        """Add a round.
 
         Args:
-            document: ``fatektool.snapshot/1``, or ``fatektool.watch/1``, which says nothing of elements.
+            document: ``fatektool.snapshot/1``, or ``fatektool.watch/1``, which has no data of elements.
         """
         time, values, errors = document["time"], document["values"], document["errors"]
         self._open.pop(None, None)
@@ -148,7 +148,7 @@ class Rounds:
         self.count += 1
 
     def fail(self, time: str, reason: str) -> None:
-        """Take a round of which nothing was read: when, and why."""
+        """Add a round of which nothing was read, with time and reason."""
         self._gap(None, time, reason)
         self._keep(time, {})
         self.lost += 1
@@ -156,7 +156,7 @@ class Rounds:
     def kept(self) -> list[KeptRound]:
         """The rounds of which points are kept, in the order of their times, the newest among them.
 
-        A document's time is to the second. Rounds of one second are put evenly into it.
+        The time of a document has whole seconds. Rounds within one second are distributed evenly over it.
         """
         rounds = list(self._kept)
         if self._newest is not None and (not rounds or rounds[-1] is not self._newest):
@@ -193,7 +193,7 @@ class Rounds:
 
 
 def is_number(value: Any) -> bool:
-    """True for what a line can show; a discrete is no number."""
+    """True for a value that a line chart can show; a discrete is not a number."""
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
@@ -201,7 +201,7 @@ def seconds(time: str) -> float:
     """RFC 3339 as seconds since 1970.
 
     Raises:
-        ValueError: it is no time, such as the 31st of April.
+        ValueError: it is not a time, such as the 31st of April.
     """
     return datetime.fromisoformat(time).timestamp()
 

@@ -1,7 +1,7 @@
-"""Scales of charts: a value's place, round numbers for the ticks, times of day.
+"""Scales of charts: the place of a value, round numbers for the ticks, times of day.
 
-Values may lie anywhere that a double reaches, so differences are taken by halves: the whole may be past the
-largest number.
+Values may be any double, so differences are computed with halves: a difference may be larger than the largest
+double.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class Scale:
 
 
 def ends(values: Sequence[float], *, zero: bool = False) -> tuple[float, float]:
-    """The ends of a scale for these values, one at least; never equal.
+    """The ends of a scale for these values, at least one; they are never equal.
 
     Args:
         values: finite numbers.
@@ -62,7 +62,7 @@ def ends(values: Sequence[float], *, zero: bool = False) -> tuple[float, float]:
 
 
 def ticks(low: float, high: float, most: int = 5) -> list[float]:
-    """Round numbers between two ends, about so many; the ends themselves where there is none."""
+    """Round numbers between two ends, about ``most``; the ends themselves if there are none."""
     rough = (high / 2 - low / 2) / most * 2
     if not _SMALLEST < rough < math.inf:
         return [low, high]
@@ -74,7 +74,7 @@ def ticks(low: float, high: float, most: int = 5) -> list[float]:
 
 
 def labels(values: Sequence[float]) -> list[str]:
-    """Numbers as text, with just so many digits that no two look alike."""
+    """Numbers as text, with as many digits as are needed to distinguish them."""
     for digits in range(3, 18):
         shown = [_plain(value, digits) for value in values]
         if len(set(shown)) == len(set(values)) and all(
@@ -96,7 +96,7 @@ def time_ticks(first_s: float, last_s: float, most: int = 5) -> list[tuple[float
     Args:
         first_s: seconds since 1970, UTC.
         last_s: the same, not earlier.
-        most: at most so many.
+        most: the most of them.
     """
     span = max(1.0, last_s - first_s)
     step = next((each for each in _TIME_STEPS if span / each <= most), 0)
@@ -121,5 +121,5 @@ def moment(seconds: float) -> datetime:
 
 
 def stamp(seconds: float) -> str:
-    """A time for people, to the second: ``2026-11-22 03:15:00``."""
+    """A time as text, in whole seconds: ``2026-11-22 03:15:00``."""
     return moment(seconds).strftime("%Y-%m-%d %H:%M:%S")

@@ -1,7 +1,7 @@
-"""``watch`` and ``snapshot``: what a PLC's data were over time.
+"""``watch`` and ``snapshot``: the data of a PLC over time.
 
-Numbers are lines, discretes a timing diagram, texts a table of their changes; the overview has the figures of
-all rounds. What was not read is a gap, crossed out in the chart and named in a table.
+Numbers are shown as lines, discretes as a timing diagram, texts as a table of their changes; the overview
+includes all rounds. Missing values are gaps: crosses in the chart, and rows in a table.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ _IN_ONE_DIAGRAM: Final = 16
 
 @dataclass(frozen=True, slots=True)
 class SeriesSource:
-    """Of which PLC a series is.
+    """The PLC of a series.
 
     Attributes:
-        target: as the user named it.
+        target: as the user wrote it.
         station: 1 to 254.
         protocol: ``facon``.
-        schema: the documents' name.
-        time: when the report is written if nothing was ever read, UTC, RFC 3339.
+        schema: of the documents.
+        time: of the report, if nothing was read, UTC, RFC 3339.
     """
 
     target: str
@@ -55,9 +55,9 @@ def series_report(
 
     Args:
         rounds: the series.
-        place: of which PLC.
-        ended: why it ended before its time; None if it did not.
-        left_out: what was there and is not in it, as a sentence.
+        place: the PLC.
+        ended: why it ended early; None if it did not.
+        left_out: what is missing in it, as a sentence.
     """
     kept = rounds.kept()
     keys = _chosen(rounds.tracks)
@@ -67,7 +67,7 @@ def series_report(
         section(
             "Overview",
             *_remarks(rounds, left_out),
-            bounded(len(rounds.tracks), "those that changed before others"),
+            bounded(len(rounds.tracks), "values that changed first"),
             _overview(rounds, keys),
         ),
         *_numbers(rounds, {key: points for key, points in figures.items() if points}),
@@ -115,15 +115,15 @@ def _remarks(rounds: Rounds, left_out: str) -> list[Html]:
     if rounds.stride > 1:
         found.append(
             note(
-                f"The figures in this table are of all rounds. The charts show one round of {rounds.stride} "
-                f"and the last, so a short peak or gap may be missing in them."
+                f"This table includes all rounds. The charts show one of {rounds.stride} rounds and the "
+                f"last, so short peaks or gaps may be missing in them."
             )
         )
     return found
 
 
 def _chosen(tracks: Mapping[str, Track]) -> list[str]:
-    """The keys that are shown, in their order: where there are too many, those that changed come first."""
+    """The keys that are shown, in their order: if there are too many, first those that changed."""
     ranked = sorted(enumerate(tracks), key=lambda each: (not tracks[each[1]].changes, each[0]))
     return [key for _, key in sorted(ranked[:MOST_ROWS])]
 
@@ -151,7 +151,7 @@ def _overview(rounds: Rounds, keys: Sequence[str]) -> Html:
 
 
 def _points(key: str, kept: Iterable[KeptRound], fits: Callable[[Any], bool]) -> list[Point]:
-    """A key's values over time; None where one is missing, nothing at all if none fits."""
+    """A key's values over time; None for a missing one; empty if none fits."""
     found: list[tuple[float, Any]] = [(each.time_s, each.values.get(key)) for each in kept]
     points: list[Point] = [(time_s, float(value) if fits(value) else None) for time_s, value in found]
     return points if any(value is not None for _, value in points) else []
@@ -171,7 +171,7 @@ def _numbers(rounds: Rounds, figures: Mapping[str, list[Point]]) -> list[Html]:
         drawn = line(f"line-{number}", caption, said, points)
         charts.append(chart(caption, drawn, _figures(caption, points)))
     left = len(figures) - len(shown)
-    remark = [note(f"{left} more have no chart: those that changed come first.")] if left else []
+    remark = [note(f"{left} more have no chart: values that changed come first.")] if left else []
     return [section("Numbers", *remark, tag("div", *charts, class_="charts"))]
 
 
@@ -202,7 +202,7 @@ def _discretes(figures: Mapping[str, list[Point]]) -> list[Html]:
 
 
 def _changes(caption: str, rows: Sequence[tuple[str, Sequence[Point]]]) -> Html:
-    """When each of them changed, and to what; the first value begins it."""
+    """The time and new value of each change, after the first value."""
     found = []
     for key, points in rows:
         before: float | None = None
@@ -250,4 +250,4 @@ def _gaps(rounds: Rounds) -> list[Html]:
     ]
     left = rounds.gaps_in_all - len(rounds.gaps)
     remark = [note(f"The first {MOST_GAPS} are shown, {left} more are left out.")] if left else []
-    return [section("Gaps", *remark, table("What was not read", head, rows, numeric=(3,)))]
+    return [section("Gaps", *remark, table("Missing values", head, rows, numeric=(3,)))]

@@ -1,4 +1,4 @@
-"""``snapshot``: what a PLC's data were at one time, as a table."""
+"""``snapshot``: the data of a PLC at one time, as a table."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def snapshot_report(document: Mapping[str, Any]) -> str:
         document: ``fatektool.snapshot/1``.
     """
     errors = document["errors"]
-    head = ("Key", "Element", "Type", "Value", "Unit", "Raw, hex", "Why there is none")
+    head = ("Key", "Element", "Type", "Value", "Unit", "Raw, hex", "Why missing")
     rows = [
         (
             key,
@@ -39,7 +39,7 @@ def snapshot_report(document: Mapping[str, Any]) -> str:
     said = f"{counted(count - len(errors), 'value')} read in {counted(document['requests'], 'request')}."
     verdict = Verdict("Read", said)
     if errors:
-        verdict = Verdict("In part", f"{said} {len(errors)} could not be read.", good=False)
+        verdict = Verdict("Read in part", f"{said} {len(errors)} could not be read.", good=False)
     place = f"station {document['station']} on {document['target']}"
     facts: list[tuple[str, object]] = [
         ("PLC", f"{place}, {document['protocol']}"),
@@ -49,7 +49,7 @@ def snapshot_report(document: Mapping[str, Any]) -> str:
         ("Values", figure(count)),
         ("Not read", figure(len(errors))),
     ]
-    parts = [bounded(count, "the first"), table("What the PLC held", head, rows, numeric=(3, 5))]
+    parts = [bounded(count, "the first"), table("Values in the PLC", head, rows, numeric=(3, 5))]
     report = Report(
         "Snapshot", place, verdict, facts, [section("Values", *parts)], document["schema"], document["time"]
     )
@@ -57,14 +57,14 @@ def snapshot_report(document: Mapping[str, Any]) -> str:
 
 
 def bounded(count: int, which: str) -> Html | str:
-    """A remark where there are more values than a table holds."""
+    """A remark if there are more values than the table shows."""
     if count <= MOST_ROWS:
         return ""
     return note(f"{MOST_ROWS} values of {count} are shown, {which}; the JSON document (--json) has all.")
 
 
 def mode_of(document: Mapping[str, Any] | None) -> str:
-    """RUN or STOP, as a document says; a dash for none, and where the protocol does not say."""
+    """RUN or STOP in a document; a dash if it has none."""
     if document is None or document["running"] is None:
         return DASH
     return "RUN" if document["running"] else "STOP"

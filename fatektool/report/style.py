@@ -1,8 +1,8 @@
 """The style sheet of every report: light, dark, on paper, in a narrow window.
 
-Each scheme is a set of colours; everything else names them. What a colour says a mark, a word or a pattern
-says too. The contrast of text is 4.5 to 1 or more, that of lines 3 to 1 (WCAG 2.2, AA). Paper is always
-light, and as printers leave backgrounds out, nothing there depends on one.
+Each scheme is a set of colours; everything else uses their names. The meaning of a colour is also shown by a
+mark, a word or a pattern. The contrast of text is 4.5 to 1 or more, that of lines 3 to 1 (WCAG 2.2, AA).
+Paper is always light, and nothing on it depends on a background, because printers omit backgrounds.
 """
 
 from __future__ import annotations

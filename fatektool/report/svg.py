@@ -1,13 +1,13 @@
 """Charts as inline SVG: columns, a line over time, a timing diagram of discretes.
 
-Every chart is one image for a screen reader, with a title and a description of its own; its figures are in
-a table beside it. Colours come from the style sheet, so that a chart is right on a dark screen and on paper.
+For a screen reader, every chart is one image with a title and a description; its numbers are in a table.
+Colours come from the style sheet, so a chart is readable on a dark screen and on paper.
 
 A chart is ``WIDTH`` wide and scales with the window::
 
     left | plot                     | right
          |                          |
-    -----+--------------------------+ bottom: labels, then what the axis is
+    -----+--------------------------+ bottom: labels, then the name of the axis
 """
 
 from __future__ import annotations
@@ -44,13 +44,13 @@ Point = tuple[float, float | None]
 
 @dataclass(frozen=True, slots=True)
 class Columns:
-    """A chart of columns, one beside the other.
+    """A column chart.
 
     Attributes:
-        names: under them.
+        names: under the columns.
         values: their heights, from 0.
-        axis: what the names are, with unit.
-        marks: upright lines: a place in columns (2.5 is the middle of the third), and what is there.
+        axis: the meaning of the names, with unit.
+        marks: vertical lines: the place in columns (2.5 is the middle of the third), and a text.
     """
 
     names: Sequence[str]
@@ -64,10 +64,10 @@ def canvas(name: str, title: str, said: str, height: float, content: Html) -> Ht
 
     Args:
         name: its id.
-        title: what it is.
-        said: what is to be seen.
-        height: in its own units; it is ``WIDTH`` wide.
-        content: what is drawn.
+        title: of the chart.
+        said: a description.
+        height: in units of the image, which is ``WIDTH`` wide.
+        content: the drawing.
     """
     return tag(
         "svg",
@@ -82,14 +82,14 @@ def canvas(name: str, title: str, said: str, height: float, content: Html) -> Ht
 
 
 def label(x: float, y: float, text: object, *, anchor: str = "start", strong: bool = False) -> Html:
-    """A text; ``anchor`` is what of it is at x: start, middle, end."""
+    """A text; ``anchor`` is the part of it at x: start, middle, end."""
     return tag(
         "text", text, x=_short(x), y=_short(y), text_anchor=anchor, class_="strong" if strong else None
     )
 
 
 def columns(name: str, title: str, said: str, data: Columns) -> Html:
-    """Columns from zero; one that is not zero is never too low to be seen."""
+    """Columns from zero; one that is not zero is always visible."""
     low, high = ends([*data.values, 0.0], zero=True)
     roof = _TOP + (_MARKS if data.marks else 0)
     up = Scale(low, high, _BOTTOM, roof)
@@ -135,12 +135,12 @@ def columns(name: str, title: str, said: str, data: Columns) -> Html:
 
 
 def line(name: str, title: str, said: str, points: Sequence[Point]) -> Html:
-    """A line over time that breaks where there is no value; the break is crossed out under it.
+    """A line over time, with a gap where there is no value; crosses mark the gap.
 
     Args:
         name: the chart's id.
-        title: what it is.
-        said: what is to be seen.
+        title: of the chart.
+        said: a description.
         points: in the order of their times, at least one.
     """
     across = _times(points, _LEFT, _RIGHT)
@@ -157,12 +157,12 @@ def line(name: str, title: str, said: str, points: Sequence[Point]) -> Html:
 
 
 def timing(name: str, title: str, said: str, rows: Sequence[tuple[str, Sequence[Point]]]) -> Html:
-    """Discretes over time, a row each: high and filled is on.
+    """Discretes over time, one row each: high and filled is on.
 
     Args:
         name: the chart's id.
-        title: what it is.
-        said: what is to be seen.
+        title: of the chart.
+        said: a description.
         rows: names and points of 0 and 1, in the order of their times.
     """
     across = _times([point for _, points in rows for point in points], _NAMES, _RIGHT)
@@ -195,7 +195,7 @@ def _levels(up: Scale) -> Iterator[Html]:
 
 
 def _clock(across: Scale, bottom: float) -> Iterator[Html]:
-    """The axis of time: round times, then from when to when."""
+    """The time axis: round times, then the whole span."""
     yield tag("path", d=f"M{_short(across.start)} {bottom}H{_short(across.end)}", class_="axis")
     for seconds, text in time_ticks(across.low, across.high):
         x = across.at(seconds)
@@ -218,7 +218,7 @@ def _runs(points: Sequence[Point]) -> Iterator[list[tuple[float, float]]]:
 
 
 def _path(points: Sequence[Point], across: Scale, up: Scale) -> str:
-    """From point to point; a single one is a dot, by the round end of a line of no length."""
+    """A line from point to point; a single point is a dot: the round end of a line without length."""
     found = []
     for run in _runs(points):
         places = [f"{_short(across.at(x))} {_short(up.at(y))}" for x, y in run]
@@ -227,7 +227,7 @@ def _path(points: Sequence[Point], across: Scale, up: Scale) -> str:
 
 
 def _steps(points: Sequence[Point], across: Scale, up: Scale) -> str:
-    """Level to the next point, then up or down."""
+    """Horizontal to the next point, then up or down."""
     found = []
     for run in _runs(points):
         found.append(f"M{_short(across.at(run[0][0]))} {_short(up.at(run[0][1]))}h0")
@@ -239,7 +239,7 @@ def _steps(points: Sequence[Point], across: Scale, up: Scale) -> str:
 
 
 def _blocks(points: Sequence[Point], across: Scale) -> Iterator[tuple[float, float]]:
-    """From where to where it is on."""
+    """The spans in which it is on."""
     for run in _runs(points):
         begin: float | None = None
         for x, y in run:
@@ -253,7 +253,7 @@ def _blocks(points: Sequence[Point], across: Scale) -> Iterator[tuple[float, flo
 
 
 def _gap_places(points: Sequence[Point], across: Scale) -> Iterator[float]:
-    """Where to cross out what was not read: so far apart that the crosses do not touch."""
+    """The places of crosses for missing values, far enough apart that they do not touch."""
     last = None
     for time_s, value in points:
         x = across.at(time_s)

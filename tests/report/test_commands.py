@@ -90,7 +90,7 @@ def test_watch(press: Press, cli: Cli) -> None:
     overview = {row[0].text: row for row in rows(page, "All values, all rounds")}
     assert {key: row[3].figures[0] for key, row in overview.items()} == found[-1]["values"]
     assert {key: row[9].figures[0] for key, row in overview.items()} == {"R0": 0, "Y0": 0, "R9000": 5}
-    (gap,) = texts(page, "What was not read")
+    (gap,) = texts(page, "Missing values")
     assert gap[2:4] == ["R9000", "5"]
     assert gap[4] == " ".join(found[0]["errors"]["R9000"].split())
 
@@ -127,7 +127,7 @@ def test_watch_over_a_line_that_dies(press: Press, cli: Cli, monkeypatch: pytest
     assert "no answer" in page.first("header").text
     assert facts(page)["Rounds read"].figures == [len(documents(done))]
     assert facts(page)["Rounds lost"].figures == [10]
-    lost = [row[2:4] for row in texts(page, "What was not read")]
+    lost = [row[2:4] for row in texts(page, "Missing values")]
     assert {name for name, _ in lost} == {"all"}
     assert sum(int(count) for _, count in lost) == 10
 
@@ -177,7 +177,7 @@ def test_one_snapshot(press: Press, cli: Cli) -> None:
     done = cli("snapshot", "R5", "D4:f32", "Y0-Y1", "R9:hex", "--report", "x.html", "--force")
     assert done.code == 0
     document = done.document("snapshot")
-    found = rows(report_of(press.folder), "What the PLC held")
+    found = rows(report_of(press.folder), "Values in the PLC")
     assert {row[0].text: row[3].figures[0] for row in found} == document["values"]
 
 

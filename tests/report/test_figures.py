@@ -34,7 +34,7 @@ def test_loopback(document: dict[str, Any]) -> None:
     names = {
         "Duration": "duration_s",
         "Sent": "sent",
-        "Came back right": "ok",
+        "Answered correctly": "ok",
         "Error rate": "error_rate",
         "Error rate, at most (95 %)": "error_rate_upper95",
         "Bytes sent": "bytes_sent",
@@ -70,10 +70,10 @@ def test_a_verdict_in_words() -> None:
     good = loopback(sent=5, ok=5, error_rate=0.0, verdict="pass", diagnosis=[])
     good["limits"] = {"max_error_rate": None, "max_p99_ms": None}
     said = parse(loopback_report(good)).first("header").text
-    assert "Pass 5 of 5 loopbacks came back right." in said
+    assert "Pass 5 of 5 loopbacks were answered correctly." in said
     said = parse(loopback_report(loopback())).first("header").text
-    assert "Fail 891 of 900 loopbacks came back right, 1 % did not." in said
-    assert "Asked for: error rate at most 0 %, p99 at most 50 ms." in said
+    assert "Fail 891 of 900 loopbacks were answered correctly, 1 % did not." in said
+    assert "Limits: error rate at most 0 %, p99 at most 50 ms." in said
     assert "interrupted" in parse(loopback_report(dead_line())).first("header").text
     assert "The line was lost" in loopback_report(loopback(ended="line lost"))
 
@@ -177,13 +177,13 @@ def test_a_thousand_changed_pages() -> None:
 def test_a_snapshot() -> None:
     document = snapshot(13)
     page = parse(snapshot_report(document))
-    found = rows(page, "What the PLC held")
+    found = rows(page, "Values in the PLC")
     assert {row[0].text: row[3].figures[0] for row in found} == document["values"]
     assert {row[0].text: row[6].text for row in found if row[6].text} == document["errors"]
     assert [row[1].text for row in found] == [part["element"] for part in document["elements"].values()]
     assert facts(page)["Duration"].figures == [document["duration_s"]]
     assert facts(page)["Mode"].text == "RUN"
-    assert "In part 5 values read in 4 requests. 1 could not be read." in page.first("header").text
+    assert "Read in part 5 values read in 4 requests. 1 could not be read." in page.first("header").text
 
 
 def test_a_series() -> None:
@@ -205,7 +205,7 @@ def test_a_series() -> None:
     assert facts(page)["Changes of mode"].figures == [1]
     assert facts(page)["Mode at the end"].text == "STOP"
     assert "Ended: interrupted." in page.first("header").text
-    named = texts(page, "What was not read")
+    named = texts(page, "Missing values")
     assert [row[2:] for row in named].count(["oil temperature", "2", "7FC00000 is not a number as f32"]) == 6
     lost = ["2026-11-22 03:01:00 UTC", "2026-11-22 03:01:03 UTC", "all", "4"]
     assert [*lost, "no answer from station 1 in 4 tries of 0.5 s"] in named
@@ -236,9 +236,9 @@ def test_the_line_of_a_series_breaks_at_its_gaps() -> None:
 
 def test_a_long_series_is_thinned_and_says_so() -> None:
     page = parse(series_report(series(5000, most_points=300), place()))
-    assert "The charts show one round of 32 and the last" in page.text
+    assert "The charts show one of 32 rounds and the last" in page.text
     assert facts(page)["Rounds read"].figures == [4996]
-    assert len(texts(page, "What was not read")) == MOST_GAPS
+    assert len(texts(page, "Missing values")) == MOST_GAPS
     assert "more are left out" in section(page, "Gaps").text
     image = next(each for each in page.every("svg") if each.first("title").text == "strokes")
     (line,) = (each for each in image.every("path") if each.attributes["class"] == "series")
@@ -261,7 +261,7 @@ def test_a_series_of_very_many_values_is_bounded() -> None:
     charts = [each.first("title").text for each in page.every("svg")]
     assert len(charts) == MOST_CHARTS
     assert "R5999" in charts
-    assert f"{MOST_ROWS} values of 6000 are shown, those that changed before others" in page.text
+    assert f"{MOST_ROWS} values of 6000 are shown, values that changed first" in page.text
 
 
 def test_nothing_read() -> None:
