@@ -5,4 +5,4 @@ from __future__ import annotations
 from collections.abc import Callable
 
 Progress = Callable[[str, int, int], None]
-"""Called with a phase in words, the pages done and the pages in all."""
+"""Called with a phase in words, the pages or elements done and those in all; of several passes all count."""

@@ -12,6 +12,7 @@ from fatektool.cli.elements.values import SELECTION, value_lines, warn_of
 from fatektool.cli.programs.program_files import comments_for, comments_options
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.modbus_map import modbus_map_option
+from fatektool.cli.shared.output import elements_bar
 from fatektool.errors import PlcError
 from fatektool.jobs.elements.items import comments_of, read_items
 from fatektool.jobs.elements.selection import parse_items
@@ -46,8 +47,8 @@ def read_command(
     """Read elements of any kind."""
     items = parse_items(elements)
     texts = comments_of(items, comments_for(connection, comments, voice, encoding))
-    with connection.open(voice) as plc:
-        found = read_items(plc, items)
+    with connection.open(voice) as plc, elements_bar(voice, items) as bar:
+        found = read_items(plc, items, bar.update)
         document = read_document(plc, found, texts)
     voice.show(document, _lines(found, texts))
     warn_of(found.errors, voice, found.not_asked)

@@ -16,6 +16,7 @@ from fatektool.cli.shared.options import PATH, is_standard
 from fatektool.cli.shared.output import Voice, table
 from fatektool.cli.shared.pairs import apart, together
 from fatektool.cli.shared.streams import print_bytes
+from fatektool.counts import spent
 from fatektool.errors import FatektoolError, PlcError
 from fatektool.files.atomic import require_place, write_whole
 from fatektool.files.times import stamp, utc
@@ -101,6 +102,7 @@ def backup_command(
         ("pages", found.proof_words),
         ("sha256", program.sha256),
         *data_rows(found.data),
+        ("took", spent(result.duration_s)),
     ]
     voice.show(saved_document(result, path), table(rows))
     return code

@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING
 import click
 
 from fatektool.cli.programs.documents import restore_document
-from fatektool.cli.shared.addressee import Addressee, ExchangeTime, Origin, spent
+from fatektool.cli.shared.addressee import Addressee, ExchangeTime, Origin
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.image_words import warn_of_image
 from fatektool.cli.shared.options import PATH
 from fatektool.cli.shared.output import Voice, table
 from fatektool.cli.shared.write_back import Offer, WriteCommand
 from fatektool.cli.shared.write_options import Terms, write_options
+from fatektool.counts import spent
 from fatektool.errors import UsageError
 from fatektool.files.atomic import read_bounded
 from fatektool.jobs.programs.restore import (

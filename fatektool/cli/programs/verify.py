@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import click
@@ -13,6 +14,7 @@ from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.options import PATH
 from fatektool.cli.shared.report import report_option, write_report
 from fatektool.cli.shared.unfinished import forget, record_of, warn_of_unfinished
+from fatektool.counts import spent
 from fatektool.jobs.programs.verify import compare_with_plc
 from fatektool.protocol.commands import Command
 
@@ -60,6 +62,7 @@ def verify_command(
         from fatektool.report.program import verify_report
 
         write_report(report, verify_report(document, found.a, found.networks or (), texts))
-    voice.show(document, program_lines(found, same, (str(file), "PLC"), texts, words=voice.verbose))
+    lines = program_lines(found, same, (str(file), "PLC"), texts, words=voice.verbose)
+    voice.show(document, chain(lines, [f"took {spent(result.duration_s)}"]))
     say_how_to_see_words(found, voice)
     return 0 if found.same else 1

@@ -16,10 +16,11 @@ shown before it is agreed to.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 from fatektool.cli.shared.output import table
 from fatektool.cli.shared.unfinished import line_name
+from fatektool.counts import spent
 from fatektool.errors import LineError, UsageError
 from fatektool.jobs.status import brief_or_none
 
@@ -29,8 +30,6 @@ if TYPE_CHECKING:
     from fatektool.cli.shared.output import Voice
     from fatektool.client import Plc
     from fatektool.protocol.status import BriefStatus
-
-_SHORT_S: Final = 90
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,13 +129,6 @@ class ExchangeTime:
         done = self._link.counters.exchanges - self._before
         seconds = self.passed_s / max(1, done) * exchanges
         return spent(seconds) if seconds < 1 else f"about {spent(seconds)}"
-
-
-def spent(seconds: float) -> str:
-    """A time in words."""
-    if seconds < 1:
-        return "under 1 s"
-    return f"{seconds:.0f} s" if seconds < _SHORT_S else f"{seconds / 60:.0f} min"
 
 
 def look(plc: Plc) -> Addressee:

@@ -12,7 +12,7 @@ import click
 from fatektool.errors import UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sized
     from types import TracebackType
     from typing import Self
 
@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
     from fatektool.jobs.progress import Progress
 
+
+_FEW: Final = 200
+"""So many elements take no more than a second or two."""
 
 _CONTROLS: Final = (*range(0x09), *range(0x0B, 0x20), *range(0x7F, 0xA0))
 _DIRECTIONS: Final = (0x61C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A))
@@ -126,6 +129,11 @@ class Voice:
     def progress(self, unit: str = "pages") -> ProgressBar:
         """A progress bar for a ``with`` statement; nothing where it would be noise."""
         return ProgressBar(unit, shown=shows_progress(self))
+
+
+def elements_bar(voice: Voice, items: Sized, *, whole: bool = False) -> ProgressBar:
+    """A progress bar for reading elements, if there are so many of them that it takes a while."""
+    return ProgressBar("elements", shown=shows_progress(voice) and (whole or len(items) > _FEW))
 
 
 def shows_progress(voice: Voice) -> bool:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from fatektool.cli.shared.addressee import ExchangeTime, with_status
 from fatektool.cli.shared.write_back import Offer, WriteCommand
+from fatektool.counts import spent
 from fatektool.jobs.snapshots.write_values import SafetySnapshot, ValuesPlan, Written, write_values
 from fatektool.protocol.values import raw_text
 
@@ -71,13 +72,16 @@ def put_values(plc: Plc, plan: ValuesPlan, offer: Offer, name: str) -> Written:
     return done
 
 
-def result_lines(plan: ValuesPlan, done: Written, offer: Offer, *details: str) -> Iterator[str]:
+def result_lines(
+    plan: ValuesPlan, done: Written, offer: Offer, pace: ExchangeTime, *details: str
+) -> Iterator[str]:
     """The result in words.
 
     Args:
         plan: what was to be written.
         done: what came of it.
         offer: what was shown.
+        pace: of all exchanges.
         details: what a dry run shows more.
     """
     count = len(plan.changes)
@@ -89,6 +93,7 @@ def result_lines(plan: ValuesPlan, done: Written, offer: Offer, *details: str) -
         taken = count - len(done.not_taken)
         yield f"{taken} of {count} values written and read back, {plan.same} were equal already"
         yield offer.here.line
+        yield f"took {spent(pace.passed_s)}"
 
 
 def change_line(change: RegisterChange) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from fatektool.callbacks import ignore
 from fatektool.errors import DataError
 from fatektool.jobs.elements.reads import read_elements
 from fatektool.protocol.values import Value, decode, raw_text
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
 
     from fatektool.client import Plc
     from fatektool.jobs.elements.selection import Item
+    from fatektool.jobs.progress import Progress
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,17 +64,18 @@ def value_of(item: Item, raw: int | None) -> Value | None:
         return f"{raw:X}"
 
 
-def read_items(plc: Plc, items: Sequence[Item]) -> ItemValues:
+def read_items(plc: Plc, items: Sequence[Item], progress: Progress = ignore) -> ItemValues:
     """Read elements and decode each by its type.
 
     Args:
         plc: the PLC.
         items: elements and types.
+        progress: called after each answer, with the number of elements.
 
     Raises:
         LineError: no answer.
     """
-    reading = read_elements(plc, [item.element for item in items])
+    reading = read_elements(plc, [item.element for item in items], progress=progress)
     values: dict[str, Value | None] = {}
     raw: dict[str, str | None] = {}
     errors: dict[str, str] = {}

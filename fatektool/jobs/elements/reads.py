@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from itertools import chain, islice
 from typing import TYPE_CHECKING, Any, Final
 
+from fatektool.callbacks import ignore
 from fatektool.errors import PlcRefused
 from fatektool.exchange.batch import proven, read_all, read_until_refused
 from fatektool.jobs.elements.division import Division, Refusals
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from fatektool.client import Plc
+    from fatektool.jobs.progress import Progress
 
 TYPICAL_TURNAROUND_S: Final = 0.010
 """A PLC answers once a program scan: some milliseconds. The plan hardly depends on it."""
@@ -57,7 +59,11 @@ class ElementReading:
 
 
 def read_elements(
-    plc: Plc, elements: Iterable[Element | Stretch], *, limits: Mapping[str, int] | None = None
+    plc: Plc,
+    elements: Iterable[Element | Stretch],
+    *,
+    limits: Mapping[str, int] | None = None,
+    progress: Progress = ignore,
 ) -> ElementReading:
     """Read elements of any kind.
 
@@ -65,13 +71,16 @@ def read_elements(
         plc: the PLC.
         elements: in any order, also in stretches, whose elements are named when all is read.
         limits: how many of a kind the PLC has, by symbol; None if it has not been asked.
+        progress: called after each answer, with the number of elements.
 
     Raises:
         LineError: no answer.
     """
     wanted = list(dict.fromkeys(elements))
-    reader = _Reader(plc, limits)
+    count = _Count(wanted, progress)
+    reader = _Reader(plc, limits, count)
     reader.read(wanted)
+    count.end()
     ended = plc.link.transport.clock()
     named_one_by_one = _each(wanted)
     errors = reader.refusals.errors
@@ -91,11 +100,56 @@ def _each(elements: Iterable[Element | Stretch]) -> list[Element]:
     return list(dict.fromkeys(chain.from_iterable(parts)))
 
 
+class _Count:
+    """How many elements are read, for the progress.
+
+    Their atoms are counted, as a request may read 16 relays as a word. It may also read more than was asked
+    for, and what is refused is read again in parts: so no more are counted than there are.
+    """
+
+    def __init__(self, wanted: Sequence[Element | Stretch], progress: Progress) -> None:
+        counted = () if progress is ignore else wanted
+        counts = [(each.first, each.count) if isinstance(each, Stretch) else (each, 1) for each in counted]
+        self._total = sum(count for _, count in counts)
+        self._atoms = sum(count * len(atoms_of(first)) for first, count in counts)
+        self._progress = progress
+        self._done = 0
+
+    def answers_of(self, requests: Sequence[Request[Any]]) -> Callable[[int], None] | None:
+        """Called with the number of answers to these requests; None if nobody wants to know."""
+        if self._progress is ignore:
+            return None
+        counted = 0
+
+        def take(answers: int) -> None:
+            nonlocal counted
+            self._done += sum(map(_size, requests[counted:answers]))
+            counted = max(counted, answers)
+            self._progress("reading", min(self._done, self._atoms) * self._total // self._atoms, self._total)
+
+        return take
+
+    def end(self) -> None:
+        """All is read, or refused."""
+        self._progress("reading", self._total, self._total)
+
+
+def _size(request: Request[Any]) -> int:
+    """How many atoms a read asks for."""
+    match request:
+        case ReadMixed(elements):
+            return sum(len(atoms_of(element)) for element in elements)
+        case ReadDiscretes(first, count) | ReadRegisters(first, count):
+            return count * len(atoms_of(first))
+    return 0
+
+
 class _Reader:
     """Reads, and finds the elements that are refused."""
 
-    def __init__(self, plc: Plc, limits: Mapping[str, int] | None) -> None:
+    def __init__(self, plc: Plc, limits: Mapping[str, int] | None, count: _Count) -> None:
         self._plc = plc
+        self._count = count
         self._limits = limits
         self._answers: list[tuple[Request[Any], Any]] = []
         self._fenced = False
@@ -191,7 +245,9 @@ class _Reader:
                 self._plc.link.fence(requests[0])
                 answers, refusal = read_until_refused(self._plc.link, requests[:1])
             else:
-                answers, refusal = read_until_refused(self._plc.link, requests, more=more)
+                answers, refusal = read_until_refused(
+                    self._plc.link, requests, self._count.answers_of(requests), more=more
+                )
             for request, answer in zip(requests, answers, strict=False):
                 self._take(request, answer)
             if refusal is not None:

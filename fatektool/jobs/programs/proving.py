@@ -22,6 +22,7 @@ from fatektool.jobs.programs.reading import (
     ProgramReading,
     gives_page,
     line_trouble,
+    one_of_several,
     read_program_twice,
     require_same_status,
 )
@@ -81,6 +82,7 @@ class _KnownReading:
         self._phase = phase
         self._expected = known.programs[0]
         self._pages: list[bytes] = []
+        self._pages_read = 0
 
     def read(self, after_first: Callable[[ProgramReading], None] | None) -> ProgramReading | None:
         """The program, or None if it has not as many pages as the one on file."""
@@ -103,7 +105,7 @@ class _KnownReading:
         order = self._known.order
         separated = set(after_an_equal(order, self._expected.pages))
         try:
-            answers = self._read(order, self._phase, separated)
+            answers = self._read(order, separated)
         except PlcRefused:
             return None
         count = len(order)
@@ -120,9 +122,9 @@ class _KnownReading:
 
     def _read_again(self, numbers: Sequence[int], trouble: int) -> None:
         """Read pages until two readings in a row agree; ``trouble`` is the line's before the first."""
-        for turn in range(2, MOST_PASSES + 1):
+        for _ in range(2, MOST_PASSES + 1):
             between = line_trouble(self._plc)
-            found = dict(zip(numbers, self._read(numbers, f"{self._phase}, pass {turn}"), strict=True))
+            found = dict(zip(numbers, self._read(numbers), strict=True))
             numbers = [number for number, page in found.items() if self._pages[number] != page]
             if not numbers:
                 return
@@ -142,12 +144,15 @@ class _KnownReading:
             hint="check shield and termination; use a lower baud rate or a shorter cable",
         )
 
-    def _read(self, numbers: Sequence[int], phase: str, separated: set[int] | None = None) -> list[bytes]:
+    def _read(self, numbers: Sequence[int], separated: set[int] | None = None) -> list[bytes]:
         total = len(numbers)
-        self._progress(phase, 0, total)
-        return self._plc.read_pages(
-            numbers, lambda done: self._progress(phase, done, total), separated=separated or ()
+        progress = one_of_several(self._progress, self._pages_read)
+        progress(self._phase, 0, total)
+        found = self._plc.read_pages(
+            numbers, lambda done: progress(self._phase, done, total), separated=separated or ()
         )
+        self._pages_read += total
+        return found
 
     def _reading(self, read_twice: int) -> ProgramReading:
         program = Program(self._expected.ladder_words, tuple(self._pages))

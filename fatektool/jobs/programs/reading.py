@@ -83,6 +83,17 @@ def read_program(
     )
 
 
+def one_of_several(progress: Progress, before: int, *, passes: int = 1) -> Progress:
+    """The progress of one pass as a part of that of all passes.
+
+    Args:
+        progress: of all passes.
+        before: pages that were read in the passes before.
+        passes: passes from this one on, as far as is known.
+    """
+    return lambda phase, done, total: progress(phase, before + done, before + passes * total)
+
+
 def read_all_pages(
     plc: Plc, words: int, phase: str, progress: Progress, count: int | None = None
 ) -> list[bytes]:
@@ -144,12 +155,14 @@ def read_program_twice(
         PlcRefused: the PLC refuses its program.
     """
     before = line_trouble(plc)
-    last = read_program(plc, phase, progress)
+    last = read_program(plc, phase, one_of_several(progress, 0, passes=2))
+    pages_read = len(last.program.pages)
     if after_first is not None:
         after_first(last)
     for number in range(2, MOST_PASSES + 1):
         between = line_trouble(plc)
-        again = read_program(plc, f"{phase}, pass {number}", progress)
+        again = read_program(plc, phase, one_of_several(progress, pages_read))
+        pages_read += len(again.program.pages)
         difference = _difference(last, again)
         if difference is None:
             proof = Proof(None, 0, len(again.program.pages))

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fatektool.client import Plc
+    from fatektool.jobs.progress import Progress
     from fatektool.jobs.snapshots.spec import SpecItem
     from fatektool.protocol.elements import Stretch
     from fatektool.protocol.status import BriefStatus
@@ -85,30 +86,33 @@ class Snapshot:
         return document
 
 
-def take_snapshot(plc: Plc, items: Sequence[SpecItem]) -> Snapshot:
+def take_snapshot(plc: Plc, items: Sequence[SpecItem], progress: Progress = ignore) -> Snapshot:
     """Read all items; one that the PLC refuses is None and listed under ``errors``.
 
     Args:
         plc: the PLC.
         items: what to read.
+        progress: called after each answer, with the number of elements.
 
     Raises:
         LineError: no answer.
     """
-    return snapshot_and_status(plc, items)[0]
+    return snapshot_and_status(plc, items, progress)[0]
 
 
-def snapshot_and_status(plc: Plc, items: Sequence[SpecItem]) -> tuple[Snapshot, BriefStatus | None]:
+def snapshot_and_status(
+    plc: Plc, items: Sequence[SpecItem], progress: Progress = ignore
+) -> tuple[Snapshot, BriefStatus | None]:
     """The same, and the status (40) that was read before it; None where there is none.
 
     Raises:
         LineError: no answer.
     """
-    return _snapshot(plc, [item.item.element for item in items], lambda: items, None)
+    return _snapshot(plc, [item.item.element for item in items], lambda: items, None, progress)
 
 
-def take_all(plc: Plc) -> Snapshot:
-    """Read all that the PLC says it has (53).
+def take_all(plc: Plc, progress: Progress = ignore) -> Snapshot:
+    """Read all that the PLC has by its status (53); ``progress`` as for ``take_snapshot``.
 
     Raises:
         LineError: no answer.
@@ -116,7 +120,7 @@ def take_all(plc: Plc) -> Snapshot:
     """
     system = plc.detailed_status().system
     stretches = everything(system)
-    return _snapshot(plc, stretches, lambda: items_in(stretches), limits(system))[0]
+    return _snapshot(plc, stretches, lambda: items_in(stretches), limits(system), progress)[0]
 
 
 def _snapshot(
@@ -124,12 +128,13 @@ def _snapshot(
     wanted: Sequence[Element | Stretch],
     items_of: Callable[[], Sequence[SpecItem]],
     within: Mapping[str, int] | None,
+    progress: Progress,
 ) -> tuple[Snapshot, BriefStatus | None]:
     clock = plc.link.transport.clock
     time, began = utc(), clock()
     tells = Command.BRIEF_STATUS in plc.link.codec.commands
     status = brief_or_none(plc)
-    reading = read_elements(plc, wanted, limits=within)
+    reading = read_elements(plc, wanted, limits=within, progress=progress)
     items = items_of()  # not before all is read: there may be many thousands
     values: dict[str, Value | None] = {}
     elements: dict[str, dict[str, Any]] = {}

@@ -43,7 +43,7 @@ def test_backup_inspect_verify(plc: Path, cli: Cli) -> None:
     document = cli("inspect", "b1.json", "--json").document("inspect")
     assert document["warnings"] == [ALL]
     assert document["page_count"] == 128
-    assert cli("verify", "b1.json", "-p", f"sim:{plc}").out.endswith("128 pages\n")
+    assert cli("verify", "b1.json", "-p", f"sim:{plc}").out.startswith("same: ")
     assert cli("backup", "b1.json", "-q", "-p", f"sim:{plc}", "--force").err == ""
 
 

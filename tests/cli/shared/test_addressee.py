@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from fatektool.cli.shared.addressee import Addressee, Origin, spent
+from fatektool.cli.shared.addressee import Addressee, Origin
 from fatektool.cli.shared.output import Voice
+from fatektool.counts import spent
 from fatektool.program.archive import save_backup
 from tests.cli.running import NEW, served
 from tests.program.samples import backup

@@ -144,7 +144,7 @@ IN_ONE = """
 import os, sys
 from fatektool.cli import main, run
 
-run("snapshot --spec a.toml -p sim: -o first".split())  # what is loaded now is loaded in each child
+run("snapshot --spec a.toml -p sim: -q -o first".split())  # what is loaded now is loaded in each child
 for number, line in enumerate(sys.argv[1:]):
     if not os.fork():
         os.dup2(os.open(f"{number}.out", os.O_WRONLY | os.O_CREAT), 1)
@@ -160,7 +160,7 @@ def test_data_are_utf_8_whatever_the_locale_says(place: Path, locale: dict[str, 
     (place / "a.toml").write_text(SPEC, encoding="utf-8")
     forms = ("csv", "influx", "prometheus", "ndjson", "json")
     lines = [f"snapshot --spec a.toml -p sim: --format {form}" for form in forms]
-    lines += [f"{line} -o {form}/a" for form, line in zip(forms, lines, strict=True)]
+    lines += [f"{line} -q -o {form}/a" for form, line in zip(forms, lines, strict=True)]
     for form in forms:
         (place / form).mkdir()
     done = subprocess.run(

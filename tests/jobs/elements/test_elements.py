@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -48,6 +50,40 @@ def test_what_is_refused_does_not_lose_the_others(wanted: str, refused: str) -> 
     for element, text in reading.errors.items():
         assert text.startswith("not asked: ") if element in reading.not_asked else f" {element} (" in text
     assert reading.requests <= made.plc.link.counters.exchanges
+
+
+@pytest.mark.parametrize(
+    "wanted",
+    [
+        "R0-R3839",
+        "X0-X255 Y0-Y255",
+        "DR0:500 R0-R1999",
+        "R0 M3 WM8 DRC200 T5",
+        "R8000-R9999",
+        "F0 F1",
+        "R9000",
+    ],
+)
+def test_the_progress_goes_up_to_all_elements(wanted: str) -> None:
+    asked = elements(*wanted.split())
+    told: list[tuple[str, int, int]] = []
+    reading = read_elements(small().plc, asked, progress=lambda *step: told.append(step))
+    assert len(reading.values) + len(reading.errors) == len(asked)
+    done = [step[1] for step in told]
+    assert {(phase, total) for phase, _, total in told} == {("reading", len(asked))}
+    assert done == sorted(done)
+    assert done[-1] == len(asked)
+    assert len(told) <= reading.requests + 1
+
+
+def test_the_progress_of_all_elements_is_near_the_truth() -> None:
+    """16 relays may be read as one word: they count as 16."""
+    told: list[int] = []
+    made = small()
+    read_elements(made.plc, elements("X0-X255", "R0-R1999"), progress=lambda _, done, __: told.append(done))
+    steps = [after - before for before, after in pairwise([0, *told])]
+    assert max(steps) <= 256
+    assert told[-2:] == [2256, 2256]
 
 
 @settings(max_examples=examples(60), deadline=None)

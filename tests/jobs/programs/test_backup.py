@@ -27,7 +27,7 @@ def test_a_backup_is_read_twice() -> None:
     assert bench.tap.count[READ_PAGE] == 2 * PAGES
     assert bench.tap.count[DETAILED_STATUS] == 2
     assert told == [
-        (phase, done, PAGES) for phase in ("reading", "reading, pass 2") for done in range(PAGES + 1)
+        ("reading", before + done, 2 * PAGES) for before in (0, PAGES) for done in range(PAGES + 1)
     ]
     assert found.plc["system"]["ladder_words"] == 400
     assert (found.source.target, found.source.station, found.source.protocol) == ("bench", 1, "facon")

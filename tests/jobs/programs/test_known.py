@@ -57,6 +57,22 @@ def test_an_unchanged_program_of_207_pages() -> None:
     assert Backup.parse(found.to_bytes()) == found
 
 
+def test_the_progress_counts_the_pages_that_are_read_again() -> None:
+    image = program(1000)
+    told: list[tuple[str, int, int]] = []
+    bench = Bench(changed(image, 5))
+    found = backup(bench.plc, known=known(image), progress=lambda *step: told.append(step))
+    again = found.proof.pages_read_twice if found.proof is not None else 0
+    assert again > 0
+    assert told == [
+        *(("reading", done, 17) for done in range(18)),
+        *(("reading", 17 + done, 17 + again) for done in range(again + 1)),
+    ]
+    told.clear()
+    backup(Bench(image).plc, known=known(image), progress=lambda *step: told.append(step))
+    assert told == [("reading", done, 17) for done in range(18)]
+
+
 def test_without_anything_on_file_it_is_414() -> None:
     image = program(13184)
     bench = Bench(image)

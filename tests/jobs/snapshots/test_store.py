@@ -128,7 +128,10 @@ def test_an_output_replaces_snapshots_and_no_program(
         assert sent == []
     assert (place / "press.json").read_bytes() == before
     done = plant.cli("snapshot", "R0", "-o", "data.json")
-    assert (done.code, done.out, done.err) == (0, "", "")
+    assert (done.code, done.out) == (0, "")
+    assert done.err.startswith("saved data.json: 1 value, took ")
+    quiet = plant.cli("snapshot", "R0", "-o", "quiet.json", "-q")
+    assert (quiet.code, quiet.out, quiet.err) == (0, "", "")
     done = plant.cli("snapshot", "R0", "-o", "data.json")
     assert "data.json exists already and is kept; choose another name, or --force" in error_of(done, 2)
     assert "is the backup" in error_of(plant.cli("snapshot", "R0", "-o", "press.json", "--force"), 2)

@@ -63,7 +63,7 @@ def apply_command(
     if not terms.dry_run and not only:
         forget_those_undone(connection.address.target, connection.address.station, file, voice)
     document |= offer.here.document() | {"source": origin.document()}
-    lines = [*result_lines(plan.values, done, offer)]
+    lines = [*result_lines(plan.values, done, offer, pace)]
     if not plan.changes and (plan.inputs or plan.missing or plan.refused):
         lines = ["nothing to write: all else is the same"]
     elif plan.changes and not terms.dry_run:

@@ -16,8 +16,10 @@ from fatektool.cli.programs.program_files import comments_for, comments_options
 from fatektool.cli.shared.connection_options import connection_options_but_format
 from fatektool.cli.shared.modbus_map import modbus_map_option
 from fatektool.cli.shared.options import PATH, standard
+from fatektool.cli.shared.output import elements_bar
 from fatektool.cli.shared.places import require_folder_for, require_free
 from fatektool.cli.shared.report import report_option, write_snapshot_report
+from fatektool.counts import counted, spent
 from fatektool.errors import PlcError, UsageError
 from fatektool.files.atomic import write_whole
 from fatektool.jobs.snapshots.comments import snapshot_with_comments
@@ -124,20 +126,27 @@ def take_command(
             f"--report shows the snapshots in {folder}: expected --format json or ndjson, got {form}"
         )
     _require_places(output, folder, append, kept, voice)
-    with connection.open(voice, needs=(Command.DETAILED_STATUS,) if whole else ()) as plc:
-        snapshot = take_all(plc) if whole else take_snapshot(plc, items)
+    needs = (Command.DETAILED_STATUS,) if whole else ()
+    with connection.open(voice, needs=needs) as plc, elements_bar(voice, items, whole=whole) as bar:
+        began = plc.link.transport.clock()
+        snapshot = take_all(plc, bar.update) if whole else take_snapshot(plc, items, bar.update)
+        took = spent(plc.link.transport.clock() - began)
     snapshot = snapshot_with_comments(snapshot, texts)
+    values = counted(len(snapshot.values) - len(snapshot.errors), "value")
     if form == "prometheus":
         text = as_prometheus(snapshot, _name(output, folder, spec))
     else:
         text = FORMATS[form](snapshot)
     if folder is not None:
-        voice.detail(f"saved {save_dated(snapshot, text, folder, suffix=SUFFIXES[form], keep=kept)}")
+        path = save_dated(snapshot, text, folder, suffix=SUFFIXES[form], keep=kept)
+        voice.say(f"saved {path}: {values}, took {took}")
     elif output is not None:
         write_whole(Path(output), encoded(text), overwrite=True)
+        voice.say(f"saved {output}: {values}, took {took}")
     if append is not None:
         wait_s = max(60.0, connection.address.lock_wait_s)
         append_line(append, as_ndjson(snapshot), kept, wait_s=wait_s, waiting=voice.say)
+        voice.say(f"appended to {append}: {values}, took {took}")
     if report is not None:
         write_snapshot_report(report, snapshot, append or folder)
     if voice.json:

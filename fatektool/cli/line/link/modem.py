@@ -116,7 +116,7 @@ def set_command(
         changes = changes_document(plan, done, dry_run=terms.dry_run)
         document = modem_document(plc, report, host, changes)
     document |= offer.here.document()
-    voice.show(document, [*result_lines(plan, done, offer), *table(_rows(report))])
+    voice.show(document, [*result_lines(plan, done, offer, pace), *table(_rows(report))])
     warn_of(not_taken_words(done), voice)
     return PlcError.exit_code if done.not_taken else 0
 

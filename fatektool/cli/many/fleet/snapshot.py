@@ -58,7 +58,7 @@ def _work(voice: Voice, folder: Path, keep: Keep | None) -> Callable[[PlcEntry, 
             raise UsageError("no specification in the inventory", hint='add spec = "FILE.toml" there')
         spec = load_spec(entry.spec)
         with opened(entry, turn, voice) as plc:
-            snapshot = take_snapshot(plc, spec.items)
+            snapshot = take_snapshot(plc, spec.items, turn.progress)
         snapshot = snapshot_with_comments(snapshot, comments_of_entry(entry, voice.of(entry.name)))
         own = folder / entry.name
         make_folder(own)

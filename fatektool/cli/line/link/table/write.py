@@ -77,7 +77,7 @@ def write_command(
         changes = changes_document(plan, done, dry_run=terms.dry_run)
         document = table_write_document(plc, file, start, changes, table=table, faults=faults, host=host)
     document |= offer.here.document()
-    voice.show(document, result_lines(plan, done, offer, *map(change_line, plan.changes)))
+    voice.show(document, result_lines(plan, done, offer, pace, *map(change_line, plan.changes)))
     warn_of(not_taken_words(done), voice)
     return PlcError.exit_code if done.not_taken else 0
 
