@@ -135,6 +135,7 @@ FRAME = {
     "fatektool.cli.app",
     "fatektool.cli.shared.lazy_group",
     "fatektool.cli.shared.output",
+    "fatektool.cli.shared.stops",
     "fatektool.cli.shared.streams",
 }
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
-import signal
 import sys
 import warnings
 from typing import TYPE_CHECKING, NoReturn, TextIO
@@ -16,12 +15,12 @@ from typing import TYPE_CHECKING, NoReturn, TextIO
 import click
 
 from fatektool.cli.shared.output import print_json, print_stderr
-from fatektool.cli.shared.streams import mend_streams, reader_is_gone
+from fatektool.cli.shared.stops import end_cleanly
+from fatektool.cli.shared.streams import is_closed_pipe, mend_streams, reader_is_gone
 from fatektool.errors import DataError, FatektoolError, FileWarning, UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from types import FrameType
 
 INTERRUPTED = 130
 CUT_SHORT = 141
@@ -66,7 +65,7 @@ def _show_warning(  # noqa: PLR0917  # the signature of warnings.showwarning
 
 
 def _run(words: list[str]) -> int:  # noqa: PLR0911  # a way out a class of error
-    signal.signal(signal.SIGTERM, _terminate)
+    end_cleanly()
     as_json = "--json" in words
     try:
         return _invoke(words)
@@ -78,10 +77,10 @@ def _run(words: list[str]) -> int:  # noqa: PLR0911  # a way out a class of erro
         if sys.stderr.isatty():
             print_stderr("")  # the terminal shows ^C, and no new line
         return failed(Interrupted(": ".join(["interrupted", *map(str, stop.args)])), as_json=as_json)
-    except BrokenPipeError:  # a pipe of somebody else's
-        _drop_output()
-        return CUT_SHORT
     except Exception as error:  # whatever it is: no traceback for the user
+        if is_closed_pipe(error):  # a pipe of somebody else's
+            _drop_output()
+            return CUT_SHORT
         if isinstance(error, OSError) and error.errno in _OUTPUT_LOST and error.filename is None:
             _drop_output()
             return failed(_output_lost(error), as_json=as_json)
@@ -154,7 +153,3 @@ def _drop_output() -> None:
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, sys.stdout.fileno())
     os.close(nowhere)
-
-
-def _terminate(_signal: int, _frame: FrameType | None) -> None:
-    raise KeyboardInterrupt

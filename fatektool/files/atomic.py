@@ -27,6 +27,7 @@ from pathlib import Path
 from typing import Final
 
 from fatektool.errors import DataError, FatektoolError, FileExists, FileWarning, UsageError
+from fatektool.files.portable_name import require_no_device
 
 STANDARD: Final = "-"
 """The name of standard input where a file is read, and of standard output where one is written."""
@@ -45,6 +46,7 @@ def require_place(path: Path, *, overwrite: bool) -> Path:
     """
     if is_pipe(path):
         return path
+    require_no_device(str(path))
     try:
         real = Path(os.path.realpath(path))
         if real.is_symlink():
@@ -163,6 +165,7 @@ def read_bounded(path: Path, limit: int) -> bytes:
         if str(path) == STANDARD:
             data = sys.stdin.buffer.read(limit + 1)
         else:
+            require_no_device(str(path))
             with path.open("rb") as file:
                 data = file.read(limit + 1)
     except (OSError, ValueError) as error:

@@ -141,7 +141,7 @@ def move_branch(
     still: Callable[[], bool],
     *,
     wait_s: float,
-    clock: Callable[[], float] = time.monotonic,
+    clock: Callable[[], float] = time.perf_counter,
     sleep: Callable[[float], None] = time.sleep,
 ) -> bool:
     """Move a branch to a new commit, if it has not moved since that commit was made.

@@ -103,7 +103,7 @@ class Transport(ABC):
 
     name: str
     serial_settings: str | None = None
-    clock: Callable[[], float] = staticmethod(time.monotonic)
+    clock: Callable[[], float] = staticmethod(time.perf_counter)
 
     @abstractmethod
     def read(self, max_bytes: int, timeout_s: float) -> bytes:

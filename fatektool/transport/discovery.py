@@ -82,8 +82,8 @@ def discover(
                 f"cannot send to {host}, UDP port {port}: {error.strerror or error}",
                 hint="check the address and the network of this computer",
             ) from error
-        until = time.monotonic() + listen_s
-        while (rest := until - time.monotonic()) > 0 and len(found) < _MOST_ANSWERS:
+        until = time.perf_counter() + listen_s
+        while (rest := until - time.perf_counter()) > 0 and len(found) < _MOST_ANSWERS:
             caller.settimeout(rest)
             try:
                 data, sender = caller.recvfrom(_DATAGRAM)

@@ -36,7 +36,7 @@ class Limit:
         seconds: float,
         stop: threading.Event | None = None,
         *,
-        clock: Callable[[], float] = time.monotonic,
+        clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         self.seconds = seconds
         self._clock = clock

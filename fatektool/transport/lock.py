@@ -42,6 +42,7 @@ if sys.platform == "win32":
 else:
     import fcntl
 
+_WINDOWS: Final = os.name == "nt"
 _POLL_S: Final = 0.05
 _SHARED: Final = ("/run/lock", "/var/lock", "/tmp")  # noqa: S108  # files are made there under O_EXCL
 _FOR_ALL: Final = 0o003
@@ -63,11 +64,24 @@ def lock_folder() -> str:
 
 
 def shared_folder() -> str | None:
-    """The folder for all users; None if there is none, as on Windows."""
-    for folder in _SHARED if os.name == "posix" else ():
+    """The folder for all users; None if there is none."""
+    if _WINDOWS:
+        return _of_windows()
+    for folder in _SHARED:
         with contextlib.suppress(OSError):
             if os.stat(folder).st_mode & _FOR_ALL == _FOR_ALL:  # noqa: PTH116  # pathlib is loaded later
                 return folder
+    return None
+
+
+def _of_windows() -> str | None:
+    r"""``C:\ProgramData\fatektool``: all users may create files in it, and read and lock each other's."""
+    base = os.environ.get("PROGRAMDATA")
+    if base:
+        folder = os.path.join(base, "fatektool")  # noqa: PTH118  # pathlib is loaded later
+        with contextlib.suppress(OSError):
+            os.makedirs(folder, exist_ok=True)  # noqa: PTH103  # pathlib is loaded later
+            return folder
     return None
 
 
@@ -135,7 +149,7 @@ class PortLock:
         wait_s: float,
         *,
         waiting: Callable[[str], object] = ignore,
-        clock: Callable[[], float] = time.monotonic,
+        clock: Callable[[], float] = time.perf_counter,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
         self.resource = resource

@@ -12,6 +12,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from enum import Enum
 from typing import TYPE_CHECKING, Final, NamedTuple
@@ -26,6 +27,7 @@ _NET: Final = re.compile(
 )
 _SCHEME: Final = r"[A-Za-z][A-Za-z0-9+.]*://"
 DEFAULT_PORT: Final = 500
+_WINDOWS: Final = os.name == "nt"
 
 
 class TargetKind(Enum):
@@ -72,6 +74,10 @@ class Target(NamedTuple):
             raise UsageError("the target is empty", hint=_WAYS)
         text = _lower_scheme(text)
         if text.startswith("sim:"):
+            if _WINDOWS:
+                from fatektool.files.portable_name import require_no_device
+
+                require_no_device(text.removeprefix("sim:"))
             return cls(text, TargetKind.SIM, path=text.removeprefix("sim:"))
         if text.startswith(("tcp:", "udp:")):
             return cls._net(text, default_port)
@@ -125,6 +131,10 @@ class Target(NamedTuple):
 
 
 def _require_place(path: str) -> None:
+    if _WINDOWS and "://" not in path:
+        from fatektool.transport.serial_line.windows import require_port
+
+        require_port(path, path)
     if "://" in path:  # loaded only if there is a URL
         from fatektool.transport.serial_line.url import require_place
 

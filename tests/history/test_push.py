@@ -318,7 +318,7 @@ def test_a_silent_one_is_ended_with_all_that_it_started(
     started = tmp_path / "started"
     ssh = script(tmp_path / "ssh", f"#!/bin/sh\necho $$ > x; mv x {started}\nexec tail -f /dev/null\n")
     hours = itertools.count(step=3600.0)
-    clock = SimpleNamespace(monotonic=lambda: next(hours) if started.exists() else 0.0)
+    clock = SimpleNamespace(perf_counter=lambda: next(hours) if started.exists() else 0.0)
     monkeypatch.setattr(bounded, "time", clock)
     monkeypatch.setattr(bounded, "_LOOK_S", 0.01)
     monkeypatch.setenv("GIT_SSH_COMMAND", str(ssh))

@@ -359,6 +359,19 @@ def test_where_locks_lie(lock_folder: Path, monkeypatch: pytest.MonkeyPatch, tmp
     assert folder() == str(tmp_path / "temporary")
 
 
+def test_one_place_for_all_users_of_windows(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("FATEKTOOL_LOCK_DIR", "")
+    monkeypatch.setenv("PROGRAMDATA", str(tmp_path))
+    monkeypatch.setattr(lock_module, "_WINDOWS", True)
+    assert Path(lock_module.lock_folder()) == tmp_path / "fatektool"
+    assert (tmp_path / "fatektool").is_dir()
+    monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path / "temporary"))
+    (tmp_path / "file").touch()
+    for nowhere in ("", str(tmp_path / "file")):
+        monkeypatch.setenv("PROGRAMDATA", nowhere)
+        assert Path(lock_module.lock_folder()) == tmp_path / "temporary"
+
+
 @posix
 def test_one_place_for_all_users(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """A folder into which this user may write and others may not is none, though it comes first."""

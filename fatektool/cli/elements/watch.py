@@ -13,6 +13,7 @@ from fatektool.cli.elements.documents import watch_document
 from fatektool.cli.elements.selection import selected, spec_options
 from fatektool.cli.elements.values import SELECTION, shown
 from fatektool.cli.programs.program_files import comments_for, comments_options
+from fatektool.cli.shared.bars import levels
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.modbus_map import modbus_map_option
 from fatektool.cli.shared.options import SecondsType
@@ -37,7 +38,6 @@ if TYPE_CHECKING:
     from fatektool.report.rounds import Rounds
 
 _TREND: Final = 24
-_BARS: Final = "▁▂▃▄▅▆▇█"
 _VALUE: Final = 7
 _GAPS: Final = 4
 _AROUND: Final = 4  # title, header, what is left out, and the line of the cursor
@@ -214,8 +214,9 @@ def _table(
     return Group(*parts)
 
 
-def trend(values: deque[float], bars: str = _BARS) -> str:
+def trend(values: deque[float]) -> str:
     """A small chart of numbers, the lowest at the bottom."""
+    bars = levels()
     if not values:
         return ""
     least, most = min(values), max(values)

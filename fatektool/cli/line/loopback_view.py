@@ -6,6 +6,7 @@ import shutil
 import time
 from typing import TYPE_CHECKING, Any, Final
 
+from fatektool.cli.shared.bars import bar
 from fatektool.cli.shared.output import shows_progress, table
 
 if TYPE_CHECKING:
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
 
 _EVERY_S: Final = 0.1
 _WIDEST_BAR: Final = 50
-_PIECES: Final = " ▏▎▍▌▋▊▉█"
 
 
 class LiveFigures:
@@ -47,11 +47,11 @@ class LiveFigures:
 
     def update(self, result: LoopbackResult) -> None:
         """Show the figures so far, ten times a second at most."""
-        if not self._shown or time.monotonic() < self._due:
+        if not self._shown or time.perf_counter() < self._due:
             return
         from rich.text import Text
 
-        self._due = time.monotonic() + _EVERY_S
+        self._due = time.perf_counter() + _EVERY_S
         total, plan = result.total, result.plan
         of = f" of {plan.count}" if plan.count is not None else ""
         until = f" of {plan.duration_s:g}" if plan.duration_s is not None else ""
@@ -116,16 +116,16 @@ def _sizes(by_size: Iterable[dict[str, Any]]) -> Iterator[str]:
 
 def _histogram(bars: list[dict[str, Any]]) -> Iterator[str]:
     """Bars that fit the terminal, in eighths of a character."""
-    highest = max(bar["count"] for bar in bars)
+    highest = max(part["count"] for part in bars)
     columns = min(_WIDEST_BAR, max(10, shutil.get_terminal_size().columns - 30))
-    for before, bar in zip([None, *bars], bars, strict=False):
-        if not bar["count"]:  # of a gap, one line
+    for before, part in zip([None, *bars], bars, strict=False):
+        if not part["count"]:  # of a gap, one line
             if before is None or before["count"]:
                 yield f"{'…':>17}"
             continue
-        eighths = -(-bar["count"] * columns * 8 // highest)
-        drawn = _PIECES[-1] * (eighths // 8) + _PIECES[eighths % 8].strip()
-        yield f"{bar['from_ms']:>8.2f}-{bar['to_ms']:<8.2f} {bar['count']:>7} {drawn}".rstrip()
+        eighths = -(-part["count"] * columns * 8 // highest)
+        drawn = bar(eighths)
+        yield f"{part['from_ms']:>8.2f}-{part['to_ms']:<8.2f} {part['count']:>7} {drawn}".rstrip()
 
 
 def findings(found: Iterable[dict[str, Any]]) -> Iterator[str]:

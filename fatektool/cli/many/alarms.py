@@ -105,11 +105,11 @@ class Alarms:
             "" if result.file is None else str(result.file),
             utc(),
         )
-        began = time.monotonic()
+        began = time.perf_counter()
         fault = run_command(command, happened)
         if fault is not None:
             voice.warn(f"--on-{event} for {outcome.name}: {fault}")
-        self._hangs += time.monotonic() - began >= TIME_LIMIT_S
+        self._hangs += time.perf_counter() - began >= TIME_LIMIT_S
 
 
 def _beside(prometheus: Path) -> dict[str, str]:

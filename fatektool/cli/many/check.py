@@ -88,11 +88,11 @@ def check_command(
     )
     together("on_change", holds=plan.reference is not None, needs="a reference, with which to compare")
     name = connection.address.target if entry is None else entry.name
-    began = time.monotonic()
+    began = time.perf_counter()
     found = run_check(connection, plan, voice, limit=Limit(deadline))
     result = check_result(connection, name, plan, found)
     outcome = Outcome(
-        name, connection.address.target, connection.address.station, time.monotonic() - began, result
+        name, connection.address.target, connection.address.station, time.perf_counter() - began, result
     )
     alarms.notify("check", outcome, voice)
     alarms.write({name}, voice)

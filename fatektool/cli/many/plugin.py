@@ -13,6 +13,7 @@ import click
 
 from fatektool.cli.many.documents import check_document
 from fatektool.cli.shared.output import print_json
+from fatektool.cli.shared.streams import is_closed_pipe
 from fatektool.errors import FatektoolError
 from fatektool.jobs.check.result import State
 
@@ -46,9 +47,9 @@ class PluginCommand(click.Command):
             return unknown(error.format_message(), as_json=as_json)
         except (click.Abort, KeyboardInterrupt):
             return unknown("interrupted", as_json=as_json)
-        except BrokenPipeError:
-            raise
-        except Exception as error:  # noqa: BLE001  # no traceback, as in the other commands
+        except Exception as error:  # no traceback, as in the other commands
+            if is_closed_pipe(error):
+                raise
             words = f"a fault of fatektool itself: {type(error).__name__}: {error}"
             return unknown(words, as_json=as_json)
 

@@ -44,7 +44,7 @@ def paced_rounds(
     failed: Callable[[LineError], object],
     voice: Voice | None,
     sleep: Callable[[float], object] | None = None,
-    clock: Callable[[], float] = time.monotonic,
+    clock: Callable[[], float] = time.perf_counter,
 ) -> Iterator[T]:
     """What each round reads, on time.
 

@@ -1,15 +1,39 @@
 """The standard streams, made fit for data: UTF-8 wherever it goes, and an end of reading that ends no work.
 
 What is redirected is data for programs, and is UTF-8 with plain line ends whatever the locale says. On a
-terminal words take the terminal's encoding, and what that lacks is shown as a code. So is it on stderr.
+terminal words take its encoding. A character that it lacks is shown as one that looks like it, else
+as a code. So is it on stderr.
 """
 
 from __future__ import annotations
 
+import codecs
 import errno
 import io
 import os
 import sys
+from typing import Final
+
+_WINDOWS: Final = os.name == "nt"
+_SHOWN: Final = "fatektool.shown"
+_ALIKE: Final = {"…": "...", "→": "->"}
+
+
+def shown(error: UnicodeError) -> tuple[str | bytes, int]:
+    """The error handler of these streams: for what cannot be encoded, what looks like it, or its code."""
+    if isinstance(error, UnicodeEncodeError) and (alike := _ALIKE.get(error.object[error.start])):
+        return alike, error.start + 1
+    return codecs.backslashreplace_errors(error)
+
+
+codecs.register_error(_SHOWN, shown)
+
+
+def is_closed_pipe(error: BaseException) -> bool:
+    """True if the reader of a pipe is gone: on Windows the C library reports it as an invalid argument."""
+    if isinstance(error, BrokenPipeError):
+        return True
+    return _WINDOWS and isinstance(error, OSError) and error.errno == errno.EINVAL and error.filename is None
 
 
 class Output(io.TextIOWrapper):
@@ -38,7 +62,7 @@ class Output(io.TextIOWrapper):
         Raises:
             OSError: it is another fault.
         """
-        if not isinstance(error, BrokenPipeError) and (os.name != "nt" or error.errno != errno.EINVAL):
+        if not is_closed_pipe(error):
             raise error
         self.cut = True
         nowhere = os.open(os.devnull, os.O_WRONLY)
@@ -65,12 +89,15 @@ def mend_streams() -> None:
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: PTH123, SIM115  # stays open
+    if isinstance(sys.stderr, io.TextIOWrapper):
+        sys.stderr.reconfigure(errors=_SHOWN)
     if isinstance(out, io.TextIOWrapper):
         terminal = out.isatty()
+        raw = open(out.fileno(), "wb", buffering=0, closefd=False)  # noqa: SIM115  # of the console on Windows
         sys.stdout = Output(
-            io.BufferedWriter(io.FileIO(out.fileno(), "wb", closefd=False)),
+            io.BufferedWriter(raw),
             out.encoding if terminal else "utf-8",
-            "backslashreplace",
+            _SHOWN,
             newline=None if terminal else "\n",
             line_buffering=terminal,
         )

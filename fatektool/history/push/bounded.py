@@ -58,13 +58,13 @@ def run_bounded(command: Sequence[str], environment: Mapping[str, str], silence_
 
 
 def _wait(process: subprocess.Popen[bytes], files: tuple[int, int], silence_s: float) -> int | None:
-    heard, since = -1, time.monotonic()
+    heard, since = -1, time.perf_counter()
     while True:
         try:
             return process.wait(min(_LOOK_S, silence_s))
         except subprocess.TimeoutExpired:
             size = sum(os.fstat(file).st_size for file in files)
-            now = time.monotonic()
+            now = time.perf_counter()
             if size != heard:
                 heard, since = size, now
             elif now - since >= silence_s:

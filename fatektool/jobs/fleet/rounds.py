@@ -56,7 +56,7 @@ class Turn(Generic[T]):
         task: what is done.
         shared: the line, open from one PLC on it to the next.
         limit: ends it; None before it begins.
-        began: when it did, by the monotonic clock.
+        began: when it did, by the clock.
         phase: what is being done, in words; empty before it begins.
         done: pages so far.
         total: pages in all.
@@ -147,9 +147,9 @@ class Fleet(Generic[T]):
     def stop(self) -> None:
         """End all turns early, and begin no other; which have ended shows in ``turns``."""
         self._stop.set()
-        until = time.monotonic() + _GRACE_S
+        until = time.perf_counter() + _GRACE_S
         for thread in self._threads:
-            thread.join(max(0.0, until - time.monotonic()))
+            thread.join(max(0.0, until - time.perf_counter()))
 
     def _work(self) -> None:
         while True:
@@ -167,7 +167,7 @@ class Fleet(Generic[T]):
                     shared.between()
 
     def _take(self, turn: Turn[T]) -> None:
-        turn.began = time.monotonic()
+        turn.began = time.perf_counter()
         turn.phase = "connecting"
         turn.limit = limit = Limit(self.deadline_s, self._stop)
         try:
@@ -182,4 +182,4 @@ class Fleet(Generic[T]):
                 hint="please report it with the command line",
             )
         turn.interrupted = turn.error is not None and limit.stopped
-        turn.duration_s = time.monotonic() - turn.began
+        turn.duration_s = time.perf_counter() - turn.began

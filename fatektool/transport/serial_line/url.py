@@ -19,6 +19,8 @@ from typing import Final
 from urllib.parse import urlsplit
 
 from fatektool.errors import FatektoolError, LineError, UsageError
+from fatektool.files.portable_name import WINDOWS
+from fatektool.transport.serial_line.windows import port_name
 
 NETWORK: Final = ("rfc2217://", "socket://")
 AROUND_A_DEVICE: Final = ("spy://", "alt://")
@@ -94,7 +96,7 @@ def line_name(target: str) -> str:
         device = None
     if device is None:
         return target.upper()
-    return device.upper() if os.name == "nt" else os.path.realpath(device)  # COM3 is not a path
+    return port_name(device) if WINDOWS else os.path.realpath(device)  # COM3 is not a path
 
 
 def _found(target: str) -> str:

@@ -1,4 +1,4 @@
-"""The error numbers of Windows for serial ports, and what each means.
+"""Serial ports of Windows: their names, and what each error number means.
 
 pyserial keeps the number only as text, at the end of its own message, and before it a message in the language
 of the system::
@@ -16,6 +16,10 @@ import re
 from enum import Enum
 from typing import Final, NamedTuple
 
+from fatektool.errors import UsageError
+from fatektool.files.portable_name import device_of_name
+
+_PORT: Final = re.compile(r"(?:[\\/]{2}[.?][\\/])?(COM\d+):?", re.ASCII | re.IGNORECASE)
 _NUMBER: Final = re.compile(r"\w+\(-?\d+, .*, None, (\d+)\)", re.DOTALL)
 
 
@@ -75,6 +79,30 @@ _TABLE: Final = (
     WindowsError(1617, WindowsErrorKind.GONE, "the device was removed"),
 )
 ERRORS: Final = {each.number: each for each in _TABLE}
+
+
+def port_name(device: str) -> str:
+    r"""One name for all names of a port: ``COM1`` for ``\\.\com1`` and ``COM1:``."""
+    found = _PORT.fullmatch(device)
+    return (found[1] if found else device).upper()
+
+
+def require_port(target: str, device: str) -> None:
+    """Check that a name does not open a port only because its first part is that of one.
+
+    Args:
+        target: as the user wrote it.
+        device: its device.
+
+    Raises:
+        UsageError: it does, as ``com2.json`` opens COM2.
+    """
+    found = device_of_name(device)
+    if found is not None and not _PORT.fullmatch(device):
+        raise UsageError(
+            f"{target}: on Windows this name opens the device {found}",
+            hint="for a port write its name alone, such as COM2",
+        )
 
 
 def windows_number(error: BaseException) -> int | None:

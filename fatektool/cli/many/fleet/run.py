@@ -142,7 +142,7 @@ def run_fleet(
     Returns:
         ``fatektool.fleet/1``, and True if it was interrupted.
     """
-    time_, began = utc(), time.monotonic()
+    time_, began = utc(), time.perf_counter()
     addresses = addresses_of(entry.address.target for entry in orders.entries)
     tasks = [
         Task(entry.name, line_name(entry.address, entry.name, addresses), partial(work, entry))
@@ -183,7 +183,7 @@ def run_fleet(
             )
     alarms.write(set(orders.inventory.plcs), voice)
     ordered = [outcomes[entry.name] for entry in orders.entries]
-    run = FleetRun(job, time_, time.monotonic() - began, orders.inventory.file, ordered, interrupted)
+    run = FleetRun(job, time_, time.perf_counter() - began, orders.inventory.file, ordered, interrupted)
     return fleet_document(run), interrupted
 
 

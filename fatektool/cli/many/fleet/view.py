@@ -82,7 +82,7 @@ class View:
 
     def refresh(self, fleet: Fleet[Any]) -> None:
         """Show the running ones, a few times a second."""
-        now = time.monotonic()
+        now = time.perf_counter()
         if not self.live or now - self._refreshed < _REFRESH_S:
             return
         self._refreshed = now

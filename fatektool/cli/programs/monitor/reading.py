@@ -55,7 +55,7 @@ class Reading:
         pace: RoundTimes,
         on_news: Callable[[], object],
         *,
-        clock: Callable[[], float] = time.monotonic,
+        clock: Callable[[], float] = time.perf_counter,
         wait: Callable[[float], object] | None = None,
     ) -> None:
         self._plc, self._monitor, self._pace, self._on_news = plc, monitor, pace, on_news

@@ -1,0 +1,92 @@
+"""Names that open a device on Windows, and none of which is a file there."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from fatektool.errors import UsageError
+from fatektool.files import portable_name
+from fatektool.files.atomic import read_bounded, require_place, write_whole
+from fatektool.files.portable_name import device_of_name
+from fatektool.transport import target as target_module
+from fatektool.transport.serial_line import url
+from fatektool.transport.serial_line.windows import port_name
+from fatektool.transport.target import Target
+from tests.rows import each
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+
+@each(
+    ("path", "device"),
+    [
+        ("com2.json", "COM2"),
+        (r"C:\backups\com2.json", "COM2"),
+        ("backups/COM9.old.json", "COM9"),
+        ("nul", "NUL"),
+        ("aux .txt", "AUX"),
+        ("LPT\u00b9.json", "LPT\u00b9"),
+        ("com2:", "COM2"),
+        ("com10.json", None),
+        ("com.json", None),
+        ("press-com2.json", None),
+        ("com2/press.json", None),
+        ("", None),
+    ],
+)
+def test_the_device_of_a_name(path: str, device: str | None) -> None:
+    assert device_of_name(path) == device
+
+
+@pytest.fixture
+def _windows(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(portable_name, "WINDOWS", True)
+    monkeypatch.setattr(url, "WINDOWS", True)
+    monkeypatch.setattr(target_module, "_WINDOWS", True)
+
+
+@pytest.mark.usefixtures("_windows")
+def test_no_file_is_written_or_read_under_such_a_name(tmp_path: Path) -> None:
+    path = tmp_path / "com2.json"
+    uses: list[Callable[[], object]] = [
+        lambda: require_place(path, overwrite=True),
+        lambda: write_whole(path, b"{}", overwrite=True),
+        lambda: read_bounded(path, 10),
+        lambda: Target.parse("sim:com2.json"),
+    ]
+    for use in uses:
+        with pytest.raises(UsageError, match="on Windows this name opens the device COM2") as caught:
+            use()
+        assert caught.value.hint == "choose another file name"
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.usefixtures("_windows")
+@pytest.mark.parametrize("name", ["com2.json", r"C:\backups\com2.json", "modem:com2.json?number=1", "nul"])
+def test_such_a_name_is_no_port(name: str) -> None:
+    with pytest.raises(UsageError, match="on Windows this name opens the device") as caught:
+        Target.parse(name)
+    assert caught.value.hint == "for a port write its name alone, such as COM2"
+
+
+@pytest.mark.usefixtures("_windows")
+@pytest.mark.parametrize(
+    "name", ["COM1", "com1", "COM1:", r"\\.\COM1", r"\\.\com1", r"\\?\COM1", "//./COM1", "spy://com1"]
+)
+def test_all_names_of_a_port_are_one_line(name: str) -> None:
+    assert url.line_name(Target.parse(name).path) == "COM1"
+
+
+@each(("device", "name"), [("COM12", "COM12"), (r"\\.\CNCA0", r"\\.\CNCA0"), ("cnca0", "CNCA0")])
+def test_names_of_ports_that_are_kept(device: str, name: str) -> None:
+    assert port_name(device) == name
+
+
+@pytest.mark.skipif(portable_name.WINDOWS, reason="on Windows it opens the port")
+def test_elsewhere_it_is_a_file_like_others(tmp_path: Path) -> None:
+    write_whole(tmp_path / "com2.json", b"{}", overwrite=False)
+    assert read_bounded(tmp_path / "com2.json", 10) == b"{}"
