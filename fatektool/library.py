@@ -163,4 +163,8 @@ def _address(target: str, inventory: str | os.PathLike[str] | None) -> PlcAddres
     from pathlib import Path
 
     entry = plc_named(target, None if inventory is None else Path(inventory))
-    return address if entry is None else entry.address
+    if entry is None or entry.modbus_map is None:
+        return address if entry is None else entry.address
+    from fatektool.jobs.snapshots.modbus_map import with_entry_map
+
+    return with_entry_map(entry.address, entry.modbus_map)

@@ -32,6 +32,7 @@ FUNCTIONS = [name for name in fatektool.__all__ if inspect.isfunction(getattr(fa
 def signature_of(function: Any) -> str:
     """As a person writes it: no addresses of functions, no whole paths of types."""
     text = re.sub(r"<function (\w+) at 0x[0-9a-f]+>", r"\1", str(inspect.signature(function)))
+    text = re.sub(r"RestoreOptions\([^)]*\)", "RestoreOptions()", text)
     return bare(text.replace("operands.Spoken", "Spoken").replace("(self, ", "("))
 
 

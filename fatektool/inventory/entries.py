@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 from difflib import get_close_matches
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fatektool.errors import DataError, UsageError
@@ -15,11 +16,10 @@ from fatektool.files.plain_text import plain_text
 from fatektool.files.portable_name import is_portable_name
 from fatektool.files.strict_toml import read_toml
 from fatektool.inventory.lines import key_lines, line_of
-from fatektool.inventory.values import KEYS, KEYS_OF_ONE, address_of, take
+from fatektool.inventory.values import KEYS, KEYS_OF_ALL, KEYS_OF_ONE, PLACEHOLDER, address_of, take
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from fatektool.address import PlcAddress
     from fatektool.inventory.lines import KeyPath
@@ -36,6 +36,7 @@ class PlcEntry:
         spec: the snapshot specification; None if there is none.
         reference: a backup or project with the expected program; None if there is none.
         project: the WinProladder project with the comments of its elements; None if there is none.
+        modbus_map: ``standard``, ``custom``, a map, or a file with one; None for the standard map.
         expect: the expected mode: ``run``, ``stop`` or ``any``.
     """
 
@@ -45,6 +46,7 @@ class PlcEntry:
     spec: Path | None = None
     reference: Path | None = None
     project: Path | None = None
+    modbus_map: str | None = None
     expect: str = "run"
 
 
@@ -72,11 +74,15 @@ class Inventory:
         file: the file.
         plcs: the PLCs without faults by name, in the order of the file.
         faults: all faults, in the order of the file.
+        backups: the folder of the last backups; None if there is none.
+        history: the git repository with the programs as they changed; None if there is none.
     """
 
     file: Path
     plcs: dict[str, PlcEntry] = field(default_factory=dict)
     faults: list[InventoryFault] = field(default_factory=list)
+    backups: Path | None = None
+    history: Path | None = None
 
     def require_whole(self) -> None:
         """Raise DataError if there is a fault; its details have all of them."""
@@ -125,6 +131,16 @@ def parse_inventory(data: bytes, file: Path) -> Inventory:
     return _TableReader(Inventory(file), lines).read(document)
 
 
+def _of_one(values: dict[str, Any], name: str, address: PlcAddress) -> dict[str, Any]:
+    """The values of one PLC: its own reference, and a Modbus map only where its protocol is Modbus."""
+    found = dict(values)
+    if "reference" in found:
+        found["reference"] = Path(str(found["reference"]).replace(PLACEHOLDER, name))
+    if not address.protocol.startswith("modbus"):
+        found.pop("modbus_map", None)
+    return found
+
+
 class _TableReader:
     """Reads the PLCs of a TOML document, and collects faults."""
 
@@ -136,9 +152,11 @@ class _TableReader:
         for key in document:
             if key not in {"defaults", "plc"}:
                 self._fault("expected [defaults] and [plc.NAME] tables", key, got=key)
-        defaults = self._table(
-            document.get("defaults", {}), ("defaults",), [key for key in KEYS if key not in KEYS_OF_ONE]
-        )
+        allowed = [*(key for key in KEYS if key not in KEYS_OF_ONE), *KEYS_OF_ALL]
+        defaults = self._table(document.get("defaults", {}), ("defaults",), allowed)
+        for key in KEYS_OF_ALL:
+            setattr(self._found, key, defaults.pop(key, None))
+        self._check_reference(defaults)
         plcs = document.get("plc", {})
         if not isinstance(plcs, dict):
             self._fault("plc: expected [plc.NAME] tables", "plc")
@@ -173,7 +191,16 @@ class _TableReader:
             key = error.message.partition(" ")[0].rstrip(":")
             self._fault(f"plc.{name}: {error}", "plc", name, key if key in KEYS else "target")
             return
-        self._found.plcs[name] = PlcEntry(name, address, **values)
+        self._found.plcs[name] = PlcEntry(name, address, **_of_one(values, name, address))
+
+    def _check_reference(self, defaults: dict[str, Any]) -> None:
+        reference = defaults.get("reference")
+        if reference is not None and PLACEHOLDER not in str(reference):
+            self._fault(
+                f"defaults: reference: expected a file for each PLC, such as references/{PLACEHOLDER}.json",
+                *("defaults", "reference"),
+                got=str(reference),
+            )
 
     def _table(self, table: object, path: tuple[str, ...], allowed: Sequence[str]) -> dict[str, Any]:
         """The valid values of a table."""

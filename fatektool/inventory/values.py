@@ -7,6 +7,7 @@ from typing import Any, Final
 
 from fatektool.address import CHECKS, PlcAddress
 from fatektool.checks import Check, OneOf
+from fatektool.errors import UsageError
 from fatektool.transport.target import Target, TargetKind
 
 EXPECTATIONS: Final = ("run", "stop", "any")
@@ -39,16 +40,41 @@ class _FileName(Check[Path]):
             return None
 
 
+class _MapName(Check[str]):
+    """The text of a Modbus map, or the name of a file with one."""
+
+    expected = "standard, custom, a map such as R2000-R2199=400101, or the name of a file"
+
+    def _taken(self, value: object) -> str | None:
+        if not isinstance(value, str) or not _is_text(value):
+            return None
+        if "=" in value:
+            from fatektool.protocol.modbus.map import parse_map
+
+            try:
+                parse_map(value)
+            except UsageError as error:
+                raise ValueError(error.message) from None
+        return value
+
+
 _BESIDE: Final[dict[str, Check[Any]]] = {
     "tags": _Texts(),
     "spec": _FileName(),
     "reference": _FileName(),
     "project": _FileName(),
+    "modbus_map": _MapName(),
     "expect": OneOf(EXPECTATIONS),
 }
+_OF_ALL: Final[dict[str, Check[Any]]] = {"backups": _FileName(), "history": _FileName()}
 KEYS: Final = tuple(CHECKS | _BESIDE)
-KEYS_OF_ONE: Final = {"reference", "project"}
+KEYS_OF_ONE: Final = {"project"}
 """Keys that are not allowed in ``[defaults]``."""
+KEYS_OF_ALL: Final = tuple(_OF_ALL)
+"""Keys that are allowed in ``[defaults]`` alone: where the commands for all PLCs keep their files."""
+PLACEHOLDER: Final = "{name}"
+"""The name of the PLC, in a ``reference`` of ``[defaults]``, which is the file of each."""
+_OTHER_MAPS: Final = {"standard", "custom"}
 
 
 def take(key: str, value: object, folder: Path) -> Any:
@@ -58,9 +84,11 @@ def take(key: str, value: object, folder: Path) -> Any:
         ValueError: wrong value; the message has what was expected.
         UsageError: wrong target.
     """
-    taken = (CHECKS | _BESIDE)[key].take(value)
+    taken = (CHECKS | _BESIDE | _OF_ALL)[key].take(value)
     if key == "target":
         return _target(taken, folder)
+    if key == "modbus_map" and taken not in _OTHER_MAPS and "=" not in taken:
+        return str(folder / taken)
     return folder / taken if isinstance(taken, Path) else taken
 
 

@@ -79,7 +79,7 @@ def test_paths_are_relative_to_the_file(target: str, found: str) -> None:
 FAULTS = [
     ('[plc.p]\ntarget = "sim:"\nstatoin = 3', "line 3: plc.p: unknown key 'statoin': did you mean station?"),
     ('[plc.p]\ntarget = "sim:"\nx = 3', "line 3: plc.p: unknown key 'x': expected one of baud, "),
-    ('[plc.p]\ntarget = "sim:"\nstation = 0', "line 3: plc.p: station: expected 1 to 254, got 0; 0 is broad"),
+    ('[plc.p]\ntarget = "sim:"\nstation = 0', "line 3: plc.p: station: expected 1 to 254, got 0; 0 is a"),
     (
         '[plc.p]\ntarget = "tcp://h"\nprotocol = "modbus-tcp"\nstation = 256',
         "line 4: plc.p: station: expected a whole number from 1 to 254, .*, got 256",
@@ -111,7 +111,7 @@ FAULTS = [
     ('[plc.COM3]\ntarget = "sim:"', "line 1: name of a PLC: expected up to 64 letters.*got 'COM3'"),
     ('[plc."a/b"]\ntarget = "sim:"', "line 1: name of a PLC: .*got 'a/b'"),
     ('[plc.p]\ntarget = "sim:"\n[plc.P]\ntarget = "sim:"', "line 3: 'P' differs only in case from 'p'"),
-    ('[defaults]\nreference = "x"\n[plc.p]\ntarget = "sim:"', "line 2: defaults: unknown key 'reference'"),
+    ('[defaults]\nreference = "x"\n[plc.p]\ntarget = "sim:"', "line 2: defaults: reference: expected a file"),
     ('[plcs.p]\ntarget = "sim:"', "line 1: expected .defaults. and .plc.NAME. tables, got 'plcs'"),
     ("plc = 3", "line 1: plc: expected .plc.NAME. tables"),
     ("plc.p = 3", r"line 1: expected a table \[plc.p\]"),

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from functools import wraps
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from fatektool.cli.shared.options import ConnectionOption
-from fatektool.errors import UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fatektool.cli.shared.connection import Connection
-    from fatektool.protocol.modbus.map import ModbusMap
 
 F = TypeVar("F", bound="Callable[..., Any]")
 
@@ -33,10 +31,16 @@ def modbus_map_option(function: F) -> F:
     )
     @wraps(function)
     def with_map(*args: Any, connection: Connection, modbus_map: str | None, **rest: Any) -> Any:
-        if modbus_map is not None:
-            chosen: ModbusMap | Literal["custom"]
-            chosen = "custom" if modbus_map == "custom" else read_map(modbus_map)
-            connection = connection._replace(address=connection.address.changed(modbus_map=chosen))
+        of_entry = None if connection.entry is None else connection.entry.modbus_map
+        if modbus_map is not None or of_entry is not None:
+            from fatektool.jobs.snapshots.modbus_map import with_entry_map, with_named_map
+
+            address = connection.address
+            if modbus_map is None:
+                address = with_entry_map(address, of_entry)
+            else:
+                address = with_named_map(address, modbus_map)
+            connection = connection._replace(address=address)
         return function(*args, connection=connection, **rest)
 
     return with_map  # type: ignore[return-value]  # click's decorators hand back what they get
@@ -48,44 +52,9 @@ def map_alone_option(function: F) -> F:
     @click.option("--modbus-map", metavar="standard|MAP|FILE", help=_FORMS)
     @wraps(function)
     def with_map(*args: Any, modbus_map: str | None, **rest: Any) -> Any:
+        from fatektool.jobs.snapshots.modbus_map import read_map
+
         chosen = read_map("standard" if modbus_map is None else modbus_map)
         return function(*args, modbus_map=chosen, **rest)
 
     return with_map  # type: ignore[return-value]  # as above
-
-
-def read_map(text: str) -> ModbusMap:
-    """A map as ``--modbus-map`` names it, but for 'custom', which takes a PLC.
-
-    Raises:
-        UsageError: it is none, or no such file.
-        DataError: the file is no snapshot, or does not hold the thirteen registers.
-    """
-    from fatektool.protocol.modbus.map import (
-        FIRST_REGISTER,
-        REGISTER_COUNT,
-        STANDARD,
-        map_of_registers,
-        parse_map,
-    )
-
-    if text == "standard":
-        return STANDARD
-    if "=" in text:
-        return parse_map(text)
-    if text == "custom":
-        raise UsageError(
-            "--modbus-map custom asks the PLC, and this command has none", hint="give the map, or a snapshot"
-        )
-    from pathlib import Path
-
-    from fatektool.jobs.snapshots.snapshot import load_snapshot, raw_of
-
-    held = {element: raw for element, raw in raw_of(load_snapshot(Path(text))).values() if raw is not None}
-    words = [
-        raw
-        for address in range(FIRST_REGISTER, FIRST_REGISTER + REGISTER_COUNT)
-        for element, raw in held.items()
-        if (element.symbol, element.address) == ("R", address)
-    ]
-    return map_of_registers(words)

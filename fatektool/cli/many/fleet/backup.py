@@ -37,14 +37,16 @@ if TYPE_CHECKING:
     "folder",
     type=PATH,
     metavar="DIR",
-    help="Write DIR/NAME.json for each PLC, in place of the previous one.",
+    help="Write DIR/NAME.json for each PLC, in place of the previous one.  [default: 'backups' of the "
+    "inventory]",
 )
 @click.option(
     "--history",
     type=PATH,
     metavar="DIR",
     envvar="FATEKTOOL_HISTORY",
-    help="Record changes in a git repository.  [env: FATEKTOOL_HISTORY]",
+    help="Record changes in a git repository.  [default: 'history' of the inventory]  "
+    "[env: FATEKTOOL_HISTORY]",
 )
 @click.option("--push", "remote", metavar="REMOTE", help="Then push the history: a folder, ssh://, https://.")
 @click.option("--single-pass", is_flag=True, help="Read once instead of twice; nothing is compared.")
@@ -69,8 +71,13 @@ def backup_command(
     image without a program, where all bytes are the same, is a failure. 'fatektool history' shows the records
     of --history. A failed push is a warning, and exit 1.
     """
+    folder, history = folder or orders.inventory.backups, history or orders.inventory.history
     if folder is None and history is None:
-        raise UsageError("no target for the backups", hint="give --dir DIR or --history DIR, or both")
+        raise UsageError(
+            "no target for the backups",
+            hint="give --dir DIR or --history DIR, or both; or 'backups' and 'history' in [defaults] of the "
+            "inventory",
+        )
     if remote is not None and history is None:
         raise UsageError("--push goes with --history DIR")
     if folder is not None:

@@ -41,7 +41,11 @@ _MOST_NAMED = 5
 )
 @click.option("--no-reference", is_flag=True, help="Do not compare the programs, which takes time.")
 @click.option(
-    "--backups", type=PATH, metavar="DIR", help="Folder of the last backups, written by 'fleet backup'."
+    "--backups",
+    type=PATH,
+    metavar="DIR",
+    help="Folder of the last backups, written by 'fleet backup'.  [default for --max-age: 'backups' of the "
+    "inventory]",
 )
 @click.option("--max-age", metavar="AGE", help="Maximum age of the backups: 36h, 7d.")
 @alarm_options(changes=True, place_first=False)
@@ -60,7 +64,9 @@ def check_command(
     Each PLC is checked as by 'check', with the reference and the mode of the inventory.
     """
     if max_age is not None and backups is None:
-        raise UsageError("--max-age goes with --backups DIR")
+        backups = orders.inventory.backups
+    if max_age is not None and backups is None:
+        raise UsageError("--max-age goes with --backups DIR, or 'backups' in [defaults] of the inventory")
     apart("on_change", "no_reference")
     age_s = None if max_age is None else parse_age(max_age)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import click
@@ -16,6 +17,7 @@ from fatektool.errors import PlcError, UsageError
 from fatektool.files.atomic import make_folder
 from fatektool.jobs.snapshots.comments import snapshot_with_comments
 from fatektool.jobs.snapshots.formats import as_json
+from fatektool.jobs.snapshots.modbus_map import with_entry_map
 from fatektool.jobs.snapshots.snapshot import take_snapshot
 from fatektool.jobs.snapshots.spec import load_spec
 from fatektool.jobs.snapshots.store import Keep, save_dated
@@ -57,7 +59,8 @@ def _work(voice: Voice, folder: Path, keep: Keep | None) -> Callable[[PlcEntry, 
         if entry.spec is None:
             raise UsageError("no specification in the inventory", hint='add spec = "FILE.toml" there')
         spec = load_spec(entry.spec)
-        with opened(entry, turn, voice) as plc:
+        mapped = replace(entry, address=with_entry_map(entry.address, entry.modbus_map))
+        with opened(mapped, turn, voice) as plc:
             snapshot = take_snapshot(plc, spec.items, turn.progress)
         snapshot = snapshot_with_comments(snapshot, comments_of_entry(entry, voice.of(entry.name)))
         own = folder / entry.name

@@ -26,15 +26,27 @@ def history_option(function: F) -> F:
         type=PATH,
         metavar="DIR",
         envvar="FATEKTOOL_HISTORY",
-        help="The git repository.  [env: FATEKTOOL_HISTORY]",
+        help="The git repository.  [default: 'history' of the inventory]  [env: FATEKTOOL_HISTORY]",
     )
     @wraps(function)
     def with_history(*args: Any, folder: Path | None, **rest: Any) -> Any:
+        folder = folder or _of_inventory()
         if folder is None:
-            raise UsageError("no history is given", hint="give --history DIR or set FATEKTOOL_HISTORY")
+            raise UsageError(
+                "no history is given",
+                hint="give --history DIR, set FATEKTOOL_HISTORY, or name it in [defaults] of the inventory",
+            )
         return function(*args, folder=folder, **rest)
 
     return with_history  # type: ignore[return-value]  # click's decorators hand back what they get
+
+
+def _of_inventory() -> Path | None:
+    """The history that the usual inventory names; None without one."""
+    from fatektool.inventory.find import inventory_path, whole_inventory
+
+    path = inventory_path(None)
+    return None if path is None else whole_inventory(path).history
 
 
 def name_and_revision(which: str) -> tuple[str, str]:

@@ -28,6 +28,8 @@ def inventory_document(found: Inventory, entries: Iterable[PlcEntry]) -> dict[st
     return {
         "schema": "fatektool.inventory/1",
         "file": str(found.file),
+        "backups": None if found.backups is None else str(found.backups),
+        "history": None if found.history is None else str(found.history),
         "plcs": [_entry_document(entry) for entry in entries],
     }
 
@@ -46,5 +48,6 @@ def _entry_document(entry: PlcEntry) -> dict[str, Any]:
         "spec": None if entry.spec is None else str(entry.spec),
         "reference": None if entry.reference is None else str(entry.reference),
         "project": None if entry.project is None else str(entry.project),
+        "modbus_map": entry.modbus_map,
         "expect": entry.expect,
     }

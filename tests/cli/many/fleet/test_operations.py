@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from fatektool.inventory.entries import parse_inventory
+from fatektool.inventory.values import KEYS_OF_ALL
 from tests.forks.shell import path as shell_path
 from tests.root import EXAMPLES, ROOT
 
@@ -88,7 +89,8 @@ def test_the_page_names_every_key_and_option(cli: Cli) -> None:
     rows = PAGE.split("| key | meaning |")[1].split("\n\n")[0]
     (fault,) = parse_inventory(b'[plc.p]\ntarget = "sim:"\nqqq = 1\n', Path("x")).faults
     keys = fault.message.split("expected one of ")[1].split(", ")
-    assert sorted(re.findall(r"`(\w+)`", re.sub(r"\|[^|]*\|$", "|", rows, flags=re.MULTILINE))) == keys
+    named = re.findall(r"`(\w+)`", re.sub(r"\|[^|]*\|$", "|", rows, flags=re.MULTILINE))
+    assert sorted(named) == sorted([*keys, *KEYS_OF_ALL])
     for name in ("status", "backup", "verify", "snapshot", "check"):
         for option in re.findall(r"--(?:on-\w+|dir|history|push|deadline|jobs|select|prometheus|max-age)\b",
                                  cli("fleet", name, "--help").out):  # fmt: skip
