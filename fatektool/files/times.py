@@ -19,3 +19,16 @@ def stamp(created: str) -> str:
 def local_clock(created: str) -> str:
     """The same moment on this computer's clock, for a screen: ``04:15:00``."""
     return time.strftime("%H:%M:%S", time.localtime(timegm(time.strptime(created, "%Y-%m-%dT%H:%M:%SZ"))))
+
+
+def local(created: str) -> str:
+    """The same moment on this computer's clock, with its distance from UTC: ``2026-11-22 04:15:00 +0100``.
+
+    What is no time of this form, and all of it where the clock is UTC, stays as it is.
+    """
+    try:
+        seconds = timegm(time.strptime(created, "%Y-%m-%dT%H:%M:%SZ"))
+        here = time.localtime(seconds)
+    except (ValueError, OverflowError, OSError):
+        return created
+    return created if not here.tm_gmtoff else time.strftime("%Y-%m-%d %H:%M:%S %z", here)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fatektool.cli.shared.output import shown_time
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -16,7 +18,7 @@ def data_rows(data: DataPart | None) -> Iterator[tuple[str, object]]:
     if data is None:
         return
     counts = ", ".join(f"{count} {symbol}" for symbol, count in data.counts.items() if count)
-    yield "data", f"{counts}, read in {'RUN' if data.running else 'STOP'} {data.time}"
+    yield "data", f"{counts}, read in {'RUN' if data.running else 'STOP'} {shown_time(data.time)}"
     if data.disabled:
         held = (f"{name} {'on' if on else 'off'}" for name, on in data.disabled.items())
         yield "disabled", ", ".join(held)

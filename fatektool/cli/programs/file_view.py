@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fatektool.cli.programs.data_view import data_rows
+from fatektool.cli.shared.output import shown_time
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -20,7 +21,7 @@ def backup_rows(found: Backup, file: str) -> Iterator[tuple[str, object]]:
     used = sum(page != b"\xff" * len(page) for page in program.pages[1:])
     status = found.plc["status"]
     yield "file", f"{file}: complete, hash and header checked"
-    yield "created", f"{found.created} by {found.tool}"
+    yield "created", f"{shown_time(found.created)} by {found.tool}"
     yield (
         "source",
         f"station {source.station} on {source.target}, {source.protocol}, {source.line or 'no serial line'}",

@@ -15,10 +15,11 @@ shown before it is agreed to.
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from fatektool.cli.shared.output import table
+from fatektool.cli.shared.output import shown_time, table
 from fatektool.cli.shared.unfinished import line_name
 from fatektool.counts import spent
 from fatektool.errors import LineError, UsageError
@@ -97,7 +98,7 @@ class Origin:
             voice.warn(f"{file} is from station {self.station} on {self.target}, not from this PLC")
 
     def __str__(self) -> str:
-        return f"station {self.station} on {self.target}, {self.time}"
+        return f"station {self.station} on {self.target}, {shown_time(self.time, sys.stderr)}"
 
     def document(self) -> dict[str, Any]:
         """The origin as JSON has it."""

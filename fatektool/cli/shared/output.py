@@ -14,7 +14,7 @@ from fatektool.errors import UsageError
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sized
     from types import TracebackType
-    from typing import Self
+    from typing import Self, TextIO
 
     from rich.progress import TaskID
 
@@ -34,6 +34,20 @@ direction."""
 def visible(text: str) -> str:
     """Text from a file, a PLC or a name: what a terminal would obey is shown as a code."""
     return text.translate(_OBEYED)
+
+
+def shown_time(created: str, stream: TextIO | None = None) -> str:
+    """A time in UTC as it is printed: that of this computer's clock on a terminal, as it is elsewhere.
+
+    Args:
+        created: RFC 3339.
+        stream: where it is printed; None for stdout.
+    """
+    if not (sys.stdout if stream is None else stream).isatty():
+        return created
+    from fatektool.files.times import local
+
+    return local(created)
 
 
 def print_stderr(text: str) -> None:

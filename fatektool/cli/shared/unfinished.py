@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import os
 import re
+import sys
 from binascii import crc32
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -154,7 +155,7 @@ def unfinished_documents(target: str, station: int) -> dict[str, Any]:
 
 def _lines(record: Unfinished, path: str) -> Iterator[str]:
     """A record for a person. It names a port, to which another PLC may be connected by now."""
-    from fatektool.cli.shared.output import table
+    from fatektool.cli.shared.output import shown_time, table
     from fatektool.jobs.write_back.record import RESTORE
 
     program = record.job == RESTORE
@@ -162,7 +163,7 @@ def _lines(record: Unfinished, path: str) -> Iterator[str]:
         yield "a restore into this PLC did not complete: do not switch it to RUN"
     else:
         yield f"'{record.job}' into this PLC did not complete: some of the values may have been written"
-    rows: list[tuple[str, object]] = [("started", record.time)]
+    rows: list[tuple[str, object]] = [("started", shown_time(record.time, sys.stderr))]
     if record.file is not None:
         rows.append(("file", record.file))
     saved = f"saved in {record.safety_backup}" if record.safety_backup else "not saved"

@@ -11,7 +11,7 @@ from fatektool.cli.many.history.documents import (
 )
 from fatektool.cli.many.history.options import history_option, name_and_revision
 from fatektool.cli.shared.options import PATH, is_standard, voice_options
-from fatektool.cli.shared.output import table
+from fatektool.cli.shared.output import shown_time, table
 from fatektool.cli.shared.pairs import together
 from fatektool.cli.shared.streams import print_bytes
 from fatektool.files.atomic import require_place
@@ -47,8 +47,8 @@ def export_command(which: str, file: Path, folder: Path, voice: Voice, *, force:
     found = history.export(name, revision, file, overwrite=force)
     rows = [
         ("saved", file),
-        ("revision", f"{found.label}, recorded {utc(found.commit.time)}"),
-        ("read", found.backup.created),
+        ("revision", f"{found.label}, recorded {shown_time(utc(found.commit.time))}"),
+        ("read", shown_time(found.backup.created)),
         ("sha256", found.backup.program.sha256),
     ]
     voice.show(export_document(found, folder, file), table(rows))

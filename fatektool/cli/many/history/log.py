@@ -13,6 +13,7 @@ from fatektool.cli.many.history.documents import (
 )
 from fatektool.cli.many.history.options import history_option
 from fatektool.cli.shared.options import voice_options
+from fatektool.cli.shared.output import shown_time
 from fatektool.files.times import utc
 from fatektool.history.history import History
 from fatektool.history.revisions import SHORT
@@ -44,4 +45,4 @@ def _line(change: LogEntry) -> str:
     subject = change.commit.subject
     named = subject if subject.startswith(f"{change.name}: ") else f"{change.name}: {subject}"
     removed = " (removed)" if change.removed else ""
-    return f"{change.commit.revision[:SHORT]}  {utc(change.commit.time)}  {named}{removed}"
+    return f"{change.commit.revision[:SHORT]}  {shown_time(utc(change.commit.time))}  {named}{removed}"

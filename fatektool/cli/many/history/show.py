@@ -15,7 +15,7 @@ from fatektool.cli.programs.differences import change_lines
 from fatektool.cli.programs.file_view import backup_rows
 from fatektool.cli.shared.image_words import warn_of_image
 from fatektool.cli.shared.options import voice_options
-from fatektool.cli.shared.output import table
+from fatektool.cli.shared.output import shown_time, table
 from fatektool.files.times import utc
 from fatektool.history.history import History
 from fatektool.project.comparison import compare_programs
@@ -41,7 +41,7 @@ def show_command(which: str, folder: Path, voice: Voice) -> None:
     changes = None if before is None else compare_programs(before.program, found.backup.program).networks
     warn_of_image(found.backup.program, voice)
     rows = [
-        ("recorded", f"{utc(found.commit.time)}: {found.commit.subject}"),
+        ("recorded", f"{shown_time(utc(found.commit.time))}: {found.commit.subject}"),
         *backup_rows(found.backup, found.label),
     ]
     voice.show(show_document(found, folder, changes), chain(table(rows), change_lines(changes or ())))
