@@ -193,6 +193,7 @@ def restore_document(
     duration_s: float,
     model: str | None,
     source: dict[str, Any],
+    data: dict[str, Any] | None,
 ) -> dict[str, Any]:
     """``fatektool.restore/1``."""
     return {
@@ -206,6 +207,7 @@ def restore_document(
         "pages_written": result.pages_written,
         "pages_equal": result.pages_equal,
         "verified": result.verified,
+        "data": data,
         "safety_backup": result.safety_backup,
         "mode_before": result.mode_before,
         "mode_after": result.mode_after,

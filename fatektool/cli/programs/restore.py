@@ -2,26 +2,30 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
 from fatektool.cli.programs.documents import restore_document
+from fatektool.cli.programs.restore_data import data_document, data_plan_lines, data_rows
 from fatektool.cli.shared.addressee import Addressee, ExchangeTime, Origin
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.image_words import warn_of_image
 from fatektool.cli.shared.options import PATH
 from fatektool.cli.shared.output import Voice, table
+from fatektool.cli.shared.pairs import together
+from fatektool.cli.shared.unfinished import forget, record_of
 from fatektool.cli.shared.write_back import Offer, WriteCommand
 from fatektool.cli.shared.write_options import Terms, write_options
-from fatektool.counts import spent
-from fatektool.errors import UsageError
+from fatektool.counts import counted, spent
+from fatektool.errors import PlcError, UsageError
 from fatektool.files.atomic import read_bounded
 from fatektool.jobs.programs.restore import (
     RestoreOptions,
     RestorePlan,
     RestoreResult,
     carry_out,
+    data_of,
     plan_restore,
 )
 from fatektool.jobs.programs.safety import SafetyBackup, known_before_restore
@@ -42,6 +46,12 @@ if TYPE_CHECKING:
 
 @click.command("restore", epilog="Example: fatektool restore press.json -p sim: --stop --run --yes")
 @click.argument("file", type=PATH)
+@click.option(
+    "--data",
+    is_flag=True,
+    help="Write the data of FILE too: registers, relays, current values, disabled discretes.",
+)
+@click.option("--system", is_flag=True, help="With --data: write port and modem settings too.")
 @click.option("--stop", is_flag=True, help="STOP a running PLC. Make the machine safe first.")
 @click.option("--run", is_flag=True, help="RUN the PLC after the program is read back and verified.")
 @click.option("--changed-only", is_flag=True, help="Write only the pages that differ.")
@@ -54,21 +64,26 @@ def restore_command(
     voice: Voice,
     *,
     file: Path,
+    data: bool,
+    system: bool,
     stop: bool,
     run: bool,
     changed_only: bool,
     single_pass: bool,
     any_header: bool,
     terms: Terms,
-) -> None:
-    """Write the program in FILE into the PLC.
+) -> int:
+    """Write the program in FILE into the PLC, with --data also the data.
 
     FILE and PLC are checked, the previous program is saved as a safety backup, all pages are written and read
-    back. A restore that was interrupted is completed by the same command.
+    back. Data are written after the program is verified. A restore that was interrupted is completed by the
+    same command.
     """
+    together("system", holds=data, needs="--data")
     backup = _backup_in(file)
-    writing = WriteCommand(connection, voice, terms, file)
-    options = RestoreOptions(stop, run, changed_only, terms.rollback, any_header, single_pass)
+    options = RestoreOptions(stop, run, changed_only, terms.rollback, any_header, single_pass, data, system)
+    data_of(backup, options)
+    writing = WriteCommand(connection, voice, terms, file, *(["data"] if data else []))
     with writing.open(Command.READ_PAGE, Command.WRITE_PAGE) as plc, voice.progress() as bar:
         pace = ExchangeTime(plc)
         known = known_before_restore(backup.program, file, writing.folder, plc.link.station)
@@ -82,8 +97,9 @@ def restore_command(
         for warning in plan.warnings:
             voice.warn(warning)
         origin.warn_unless_from(here, file, voice)
-        writing.require_answer(changes=bool(plan.pages))
-        offer = _offer(writing, plan, here, [("file", file), ("from", origin)], pace)
+        writing.require_answer(changes=plan.changes)
+        ask = _Question(writing, plan, here, backup, pace)
+        offer = ask.offer([("file", file), ("from", origin)], plc)
         result = _nothing_done(plan) if terms.dry_run else _carry_out(plc, plan, file, offer, bar)
         for warning in result.warnings[len(plan.warnings) :]:
             voice.warn(warning)
@@ -96,8 +112,14 @@ def restore_command(
             duration_s=pace.passed_s,
             model=here.model,
             source=origin.document(),
+            data=data_document(plan, result),
         )
+    for name, why in result.not_taken.items():
+        voice.warn(f"{name}: {why}")
+    if result.not_taken and run:
+        voice.warn("the PLC stays in STOP, as not all data were taken")
     voice.show(document, _lines(plan, result, offer, pace))
+    return PlcError.exit_code if result.not_taken else 0
 
 
 def _backup_in(file: Path) -> Backup:
@@ -117,20 +139,56 @@ def _backup_in(file: Path) -> Backup:
     return Backup.parse(data, str(file))
 
 
-def _offer(
-    writing: WriteCommand,
-    plan: RestorePlan,
-    here: Addressee,
-    rows: list[tuple[str, object]],
-    pace: ExchangeTime,
-) -> Offer:
-    """The restore as it is shown; where the program is in the PLC already, the question is about RUN."""
-    if not plan.pages:
-        question = f"The PLC already has the program of FILE. RUN {here.name}?"
-        return Offer(writing, here, rows, [], question, "")
-    rows = [*rows, ("time", pace.time_of(len(plan.pages) + len(plan.wanted.pages)))]
-    question = f"Write the program into {here.name}?"
-    return Offer(writing, here, rows, [*_plan_lines(plan)], question, "program", ("--changed-only",))
+class _Question(NamedTuple):
+    """What is shown before a restore.
+
+    Attributes:
+        writing: the command.
+        plan: what will be done.
+        here: the PLC.
+        backup: what is restored.
+        pace: of the exchanges that the plan took.
+    """
+
+    writing: WriteCommand
+    plan: RestorePlan
+    here: Addressee
+    backup: Backup
+    pace: ExchangeTime
+
+    def offer(self, rows: list[tuple[str, object]], plc: Plc) -> Offer:
+        """The restore as it is shown; where nothing differs, the question is about RUN."""
+        plan, data = self.plan, self.plan.data
+        what = "program" if data is None else "program and data"
+        if not plan.changes:
+            question = f"The PLC already has the {what} of FILE. RUN {self.here.name}?"
+            return Offer(self.writing, self.here, rows, [], question, "")
+        exchanges = len(plan.pages) + len(plan.wanted.pages) * bool(plan.pages)
+        exchanges += 0 if data is None else data.exchanges(plc)
+        rows = [*rows, ("time", self.pace.time_of(exchanges))]
+        question = f"Write the {what} into {self.here.name}?"
+        return Offer(self.writing, self.here, rows, [*self._lines()], question, what, ("--changed-only",))
+
+    def _lines(self) -> Iterator[str]:
+        plan, differ = self.plan, self.plan.comparison.page_numbers
+        if plan.pages:
+            pages, words = (
+                "page" if len(differ) == 1 else "pages",
+                counted(plan.comparison.word_count, "word"),
+            )
+            yield f"The PLC's program differs in {pages} {ranges(differ)} ({words})."
+        else:
+            yield "The PLC's program is that of FILE already."
+        if plan.running:
+            yield "The PLC is in RUN and will be stopped."
+        if plan.pages:
+            yield f"{len(plan.pages)} of {len(plan.wanted.pages)} pages will be written, then all read back."
+        if plan.data is not None:
+            yield from data_plan_lines(plan.data)
+        elif self.backup.data is not None:
+            yield "FILE has data too. They are not written without --data: the PLC keeps its own."
+        if plan.options.run:
+            yield "Then the PLC will RUN."
 
 
 def _carry_out(plc: Plc, plan: RestorePlan, file: Path, offer: Offer, bar: ProgressBar) -> RestoreResult:
@@ -140,23 +198,16 @@ def _carry_out(plc: Plc, plan: RestorePlan, file: Path, offer: Offer, bar: Progr
         offer.agree(copy)
         bar.go_on()
 
-    safety = SafetyBackup(plan.present, plan.wanted, file, offer.writing.folder)
+    wanted = None if plan.data is None else plan.data.wanted
+    writing = offer.writing
+    earlier = None if wanted is None else writing.earlier_copy
+    safety = SafetyBackup(plan.present, plan.wanted, file, writing.folder, wanted, earlier)
     with offer.carry_out() as mark:
         result = carry_out(plc, plan, safety, agree, progress=bar.update, mark=mark)
-    offer.writing.forget()
+    writing.forget()
+    if wanted is not None:  # the program is verified too
+        forget(record_of(plc.target, plc.link.station), writing.voice)
     return result
-
-
-def _plan_lines(plan: RestorePlan) -> Iterator[str]:
-    differ = plan.comparison.page_numbers
-    pages = "page" if len(differ) == 1 else "pages"
-    words = "1 word" if plan.comparison.word_count == 1 else f"{plan.comparison.word_count} words"
-    yield f"The PLC's program differs in {pages} {ranges(differ)} ({words})."
-    if plan.running:
-        yield "The PLC is in RUN and will be stopped."
-    yield f"{len(plan.pages)} of {len(plan.wanted.pages)} pages will be written, then all read back."
-    if plan.options.run:
-        yield "Then the PLC will RUN."
 
 
 def _nothing_done(plan: RestorePlan) -> RestoreResult:
@@ -174,11 +225,14 @@ def _nothing_done(plan: RestorePlan) -> RestoreResult:
 
 def _lines(plan: RestorePlan, result: RestoreResult, offer: Offer, pace: ExchangeTime) -> Iterator[str]:
     facts = dict(offer.rows)
-    if plan.comparison.same:
-        yield f"same: the PLC's program is the one in {facts['file']} already; nothing was written"
+    if not plan.changes:
+        what = "program is" if plan.data is None else "program and data are"
+        one = "the one" if plan.data is None else "those"
+        yield f"same: the PLC's {what} {one} in {facts['file']} already; nothing was written"
     elif offer.writing.terms.dry_run:
         yield from offer.dry_run()
     else:
+        kept = result.safety_backup
         yield from table(
             [
                 ("restored", f"{facts['file']}, read back and verified"),
@@ -186,7 +240,11 @@ def _lines(plan: RestorePlan, result: RestoreResult, offer: Offer, pace: Exchang
                 ("PLC", offer.here.name),
                 ("model", offer.here.model),
                 ("pages", f"{result.pages_written} written, {result.pages_equal} were equal already"),
-                ("previous program", f"saved in {kept}" if (kept := result.safety_backup) else "not saved"),
+                *data_rows(plan, result),
+                (
+                    f"previous {offer.copied}",
+                    f"saved in {kept}" if (kept := result.safety_backup) else "not saved",
+                ),
                 ("took", spent(pace.passed_s)),
             ]
         )

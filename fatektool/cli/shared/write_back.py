@@ -64,7 +64,7 @@ class WriteCommand:
         self.folder = (
             safety_folder(terms.safety_dir, file, voice, dry_run=terms.dry_run) if terms.saves else None
         )
-        which = () if self.job == RESTORE else (self.job, self._file or "", *about)
+        which = about if self.job == RESTORE else (self.job, self._file or "", *about)
         self.record = record_of(connection.address.target, connection.address.station, *which)
 
     def open(self, *needs: Command) -> Plc:

@@ -159,7 +159,7 @@ def plan_restore(
         backup.program.require_header(
             "restore another backup; or --any-header, if the PLC had this very header when it was backed up"
         )
-    wanted = _data_of(backup, options)
+    wanted = data_of(backup, options)
     status = plc.detailed_status()
     require_size(backup.program, status.system.ladder_words)
     if status.flags.rom_pack:
@@ -214,8 +214,12 @@ def plan_restore(
     )
 
 
-def _data_of(backup: Backup, options: RestoreOptions) -> DataPart | None:
-    """The data that are to be restored."""
+def data_of(backup: Backup, options: RestoreOptions) -> DataPart | None:
+    """The data that are to be restored; None if the program alone is.
+
+    Raises:
+        UsageError: the file has none.
+    """
     if not options.data:
         return None
     if backup.data is None:

@@ -70,6 +70,26 @@ def fill_at_random(device: SimulatedPlc, seed: int) -> None:
             states[at] = random.randrange(2)
             memory.disabled[symbol][at] = random.random() < 0.1
     memory.inputs[:] = memory.status["X"]
+    memory.revision += 1
+
+
+ALWAYS: Final = {"R": (12, 3840, 3904, 4128, 4146), "M": (800, 1912)}
+"""Filled in any case: one of each use."""
+
+
+def fill_some(device: SimulatedPlc, seed: int, count: int = 12) -> None:
+    """Random values in a few places of each kind, and a disabled discrete of each."""
+    random = Random(seed)  # noqa: S311  # the same each time
+    memory = device.memory
+    for symbol, table in (*memory.registers.items(), *memory.status.items()):
+        most = 2 if symbol in memory.status else 0x10000
+        places = random.sample(range(len(table)), min(count, len(table)))
+        for at in (*places, *ALWAYS.get(symbol, ())):
+            table[at] = random.randrange(1, most) if at in ALWAYS.get(symbol, ()) else random.randrange(most)
+        if symbol in memory.disabled:
+            memory.disabled[symbol][places[0]] = 1
+    memory.inputs[:] = memory.status["X"]
+    memory.revision += 1
 
 
 def values_of(device: SimulatedPlc, *uses: Use) -> Held:
