@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from calendar import timegm
 
 
 def utc(seconds: float | None = None) -> str:
@@ -18,6 +17,8 @@ def stamp(created: str) -> str:
 
 def local_clock(created: str) -> str:
     """The same moment on this computer's clock, for a screen: ``04:15:00``."""
+    from calendar import timegm
+
     return time.strftime("%H:%M:%S", time.localtime(timegm(time.strptime(created, "%Y-%m-%dT%H:%M:%SZ"))))
 
 
@@ -26,6 +27,8 @@ def local(created: str) -> str:
 
     What is no time of this form, and all of it where the clock is UTC, stays as it is.
     """
+    from calendar import timegm
+
     try:
         seconds = timegm(time.strptime(created, "%Y-%m-%dT%H:%M:%SZ"))
         here = time.localtime(seconds)

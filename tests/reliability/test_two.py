@@ -100,7 +100,7 @@ def test_a_program_with_another_idea_of_locks_is_kept_out_too(
         monkeypatch.setenv("FATEKTOOL_LOCK_DIR", str(other))
         done = process("read", "R0", "-p", target)
         assert done.code == 3
-        assert "another program has the port open; close it" in one_line(done.err)
+        assert "another program has the port open; close that program" in one_line(done.err)
 
 
 def test_a_restore_and_a_backup_at_once_wait_for_each_other(tmp_path: Path, place: Path) -> None:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from fatektool.callbacks import ignore
 from fatektool.files.times import utc
-from fatektool.jobs.data.reading import read_data
 from fatektool.jobs.programs.proving import read_proven
 from fatektool.jobs.programs.reading import ProgramReading, read_program
 from fatektool.program.archive import Backup, Source
@@ -88,7 +87,11 @@ def backup(
         reading = read_proven(plc, known, progress, after_first=check)
         check(reading)
     found = backup_of(plc, reading)
-    return replace(found, data=read_data(plc, reading.status, progress)) if data else found
+    if not data:
+        return found
+    from fatektool.jobs.data.reading import read_data  # with the planner, which a program does not need
+
+    return replace(found, data=read_data(plc, reading.status, progress))
 
 
 def backup_of(plc: Plc, reading: ProgramReading) -> Backup:

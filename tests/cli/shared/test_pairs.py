@@ -28,7 +28,7 @@ LINE = (
 )
 VOICE = "--json --quiet --verbose"
 FREE = {
-    "backup": "--single-pass --known --any-header --raw",
+    "backup": "--data --single-pass --known --any-header --raw",
     "verify": "--comments --report --force",
     "restore": "--stop --run --changed-only --dry-run --single-pass --any-header --yes",
     "inspect": "--raw",
