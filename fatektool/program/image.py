@@ -21,7 +21,7 @@ from fatektool.program.headers.families import fewest_pages, read_header
 from fatektool.program.headers.header import PAGE_BYTES, PAGE_WORDS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Collection, Iterable, Sequence
 
     from fatektool.program.headers.header import Header
 
@@ -119,3 +119,8 @@ def ranges(numbers: Iterable[int]) -> str:
         else:
             parts.append([number, number])
     return ", ".join(f"{first}" if first == last else f"{first}-{last}" for first, last in parts)
+
+
+def page_ranges(pages: Collection[int]) -> str:
+    """Pages as text for a message: ``page 7``, ``pages 0-4, 7``."""
+    return f"{'page' if len(pages) == 1 else 'pages'} {ranges(pages)}"

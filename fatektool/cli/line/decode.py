@@ -13,6 +13,7 @@ from fatektool.cli.line.documents.frames import decode_document
 from fatektool.cli.line.frame_view import field_lines
 from fatektool.cli.shared.options import ChoiceType, voice_options
 from fatektool.cli.shared.pairs import together
+from fatektool.counts import counted
 from fatektool.errors import DataError, UsageError
 from fatektool.files.atomic import read_bounded
 from fatektool.protocol.explain import Explainer, Explanation, FrameRole
@@ -71,7 +72,7 @@ def decode_command(
     voice.show(document, _lines(found, binary=explainer.binary))
     damaged = sum(explanation.fault is not None for _, explanation in found)
     if damaged:
-        voice.warn(f"{damaged} of {len(found)} frames {'is' if damaged == 1 else 'are'} damaged")
+        voice.warn(f"{damaged} of {counted(len(found), 'frame')} damaged")
     return DataError.exit_code if damaged else 0
 
 

@@ -9,6 +9,7 @@ import click
 from fatektool.cli.line.documents.linetest import network_document
 from fatektool.cli.line.frame_view import printable
 from fatektool.cli.shared.pairs import apart, given
+from fatektool.counts import counted
 from fatektool.errors import UsageError
 from fatektool.files.times import utc
 from fatektool.transport import discovery
@@ -52,7 +53,8 @@ def look_for_modules(voice: Voice, network: str, timeout_s: float) -> int:
     if voice.json:
         voice.show(network_document(time, f"{host}:{port}", listen_s, found), ())
     count = len({answer.address for answer in found})
-    told = f"{count or 'no'} module{'' if count == 1 else 's'} answered at {host}, UDP port {port}"
+    modules = counted(count, "module") if count else "no modules"
+    told = f"{modules} answered at {host}, UDP port {port}"
     advice = "; check the address, the network and the firewall" if not count else ""
     voice.say(f"{told}, within {listen_s:g} s{advice}")
     return 0 if found else 1
@@ -73,7 +75,7 @@ def _show(voice: Voice, answer: Answer) -> None:
 
 def _lines(answer: Answer) -> Iterator[str]:
     short = "" if len(answer.data) >= discovery.SHORTEST_ANSWER else ", shorter than that of a module"
-    yield f"{answer.address}  {len(answer.data)} bytes{short}; their meaning is not documented:"
+    yield f"{answer.address}  {counted(len(answer.data), 'byte')}{short}; their meaning is not documented:"
     for at in range(0, len(answer.data), _IN_A_LINE):
         part = answer.data[at : at + _IN_A_LINE]
         yield f"  {at:04X}  {part.hex(' ').upper():<47}  {printable(part)}"

@@ -14,6 +14,7 @@ from fatektool.cli.line.network import look_for_modules, network_option
 from fatektool.cli.shared.connection_options import connection_options, without_effect
 from fatektool.cli.shared.options import ChoiceType, Several, type_of
 from fatektool.cli.shared.pairs import apart, together
+from fatektool.counts import counted
 from fatektool.errors import UsageError
 from fatektool.exchange.no_answer import longer_timeout
 from fatektool.files.times import utc
@@ -208,8 +209,8 @@ def _summary(result: ScanResult) -> str:
 
 def _parts(result: ScanResult) -> Iterator[str]:
     count = len(result.found)
-    stations = f"{count or 'no'} station{'' if count == 1 else 's'}"
-    requests = f"{result.probes} request{'' if result.probes == 1 else 's'}"
+    stations = counted(count, "station") if count else "no stations"
+    requests = counted(result.probes, "request")
     yield f"{stations} found with {requests} in {result.duration_s:.1f} s"
     if result.unclear:
         places = sorted({place.station for place in result.unclear})

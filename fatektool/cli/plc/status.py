@@ -8,6 +8,7 @@ import click
 
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.output import Voice, table
+from fatektool.counts import counted
 from fatektool.jobs.status import StatusReport, read_status
 from fatektool.protocol.commands import Command
 
@@ -56,7 +57,7 @@ def _rows(report: StatusReport) -> Iterator[tuple[str, object]]:
         case RawStatus(raw):
             yield (
                 "detailed status",
-                f"{len(raw)} bytes that no paper describes: {raw.hex(' ').upper()}",
+                f"{counted(len(raw), 'byte')} that no paper describes: {raw.hex(' ').upper()}",
             )
 
 

@@ -16,7 +16,7 @@ from fatektool.cli.shared.options import PATH, is_standard
 from fatektool.cli.shared.output import Voice, table
 from fatektool.cli.shared.pairs import apart, together
 from fatektool.cli.shared.streams import print_bytes
-from fatektool.counts import spent
+from fatektool.counts import counted, spent
 from fatektool.errors import FatektoolError, PlcError
 from fatektool.files.atomic import require_place, write_whole
 from fatektool.files.times import stamp, utc
@@ -95,7 +95,7 @@ def backup_command(
         print_bytes(found.to_bytes())
         return code
     program = found.program
-    size = f"{program.ladder_words} words, {len(program.pages)} pages"
+    size = f"{counted(program.ladder_words, 'word')}, {counted(len(program.pages), 'page')}"
     rows: list[tuple[str, object]] = [
         ("saved", path),
         ("program", f"{program.header.text()}, {size}"),

@@ -8,10 +8,10 @@ from fatektool.cli.programs.documents import diff_document
 from fatektool.cli.shared.report import write_report
 from fatektool.counts import counted
 from fatektool.files.times import utc
-from fatektool.program.image import ranges
+from fatektool.program.image import page_ranges, ranges
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping
     from pathlib import Path
 
     from fatektool.cli.shared.output import Voice
@@ -76,21 +76,16 @@ def difference_lines(found: Comparison, same: str, a: str, b: str, *, words: boo
         yield f"differs: {_extent(found)} ({a} -> {b})"
     in_both = [page.page for page in found.pages if page.a is not None and page.b is not None]
     if in_both:
-        yield f"{_pages(in_both)}"
+        yield page_ranges(in_both)
     for name, only in (
         (a, [page.page for page in found.pages if page.b is None]),
         (b, [page.page for page in found.pages if page.a is None]),
     ):
         if only:
-            yield f"{_pages(only)}: only in {name}"
+            yield f"{page_ranges(only)}: only in {name}"
     if words:
         for page in found.pages:
             yield from _word_lines(page)
-
-
-def _pages(numbers: Sequence[int]) -> str:
-    """``page 7``, ``pages 1-155``."""
-    return f"page{'' if len(numbers) == 1 else 's'} {ranges(numbers)}"
 
 
 def _word_lines(page: PageDifference) -> Iterator[str]:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from fatektool.cli.programs.data_view import data_rows
 from fatektool.cli.shared.output import shown_time
+from fatektool.counts import counted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -31,7 +32,10 @@ def backup_rows(found: Backup, file: str) -> Iterator[tuple[str, object]]:
     yield "header", header.text()
     if header.checksum is not None:
         yield "checksum", _sum_words(header.checksum)
-    yield "ladder size", f"{program.ladder_words} words, {len(program.pages)} pages, {used} not empty"
+    yield (
+        "ladder size",
+        f"{counted(program.ladder_words, 'word')}, {counted(len(program.pages), 'page')}, {used} not empty",
+    )
     yield "pages", found.proof_words
     yield "sha256", program.sha256
     yield from data_rows(found.data)
@@ -50,7 +54,10 @@ def project_rows(found: ProgramFile) -> Iterator[tuple[str, object]]:
         yield "checksum", _sum_words(header.checksum)
     if code is not None:
         unknown = f", {code.unknown_words} unknown words" if code.unknown_words else ""
-        yield "code", f"{len(code.words)} words in {len(code.networks)} networks{unknown}"
+        yield (
+            "code",
+            f"{counted(len(code.words), 'word')} in {counted(len(code.networks), 'network')}{unknown}",
+        )
     for place, name in comments.units.items():
         yield "unit", f"{name}, from byte {place:04X}"
     sure = "" if comments.sure else ", which does not decode all of them"

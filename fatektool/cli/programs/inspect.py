@@ -18,6 +18,7 @@ from fatektool.cli.programs.raw_file import require_raw_name
 from fatektool.cli.shared.options import PATH, voice_options
 from fatektool.cli.shared.output import Voice, table
 from fatektool.cli.shared.pairs import together
+from fatektool.counts import counted
 from fatektool.files.atomic import write_whole
 
 if TYPE_CHECKING:
@@ -41,6 +42,6 @@ def inspect_command(file: Path, voice: Voice, *, raw: Path | None, force: bool, 
     data = on_file.program.data if on_file.project is None else on_file.project.memory.image
     if raw is not None:
         write_whole(raw, data, overwrite=force)
-        voice.say(f"{len(data)} bytes written to {raw}")
+        voice.say(f"{counted(len(data), 'byte')} written to {raw}")
     rows = project_rows(on_file) if found is None else backup_rows(found, str(file))
     voice.show(inspect_document(on_file), table(rows))

@@ -30,7 +30,7 @@ from fatektool.jobs.programs.restore import (
 )
 from fatektool.jobs.programs.safety import SafetyBackup, known_before_restore
 from fatektool.program.archive import LARGEST_FILE, Backup
-from fatektool.program.image import ranges
+from fatektool.program.image import page_ranges
 from fatektool.program.plc_record import model_words
 from fatektool.project.records import is_project
 from fatektool.protocol.commands import Command
@@ -172,11 +172,8 @@ class _Question(NamedTuple):
     def _lines(self) -> Iterator[str]:
         plan, differ = self.plan, self.plan.comparison.page_numbers
         if plan.pages:
-            pages, words = (
-                "page" if len(differ) == 1 else "pages",
-                counted(plan.comparison.word_count, "word"),
-            )
-            yield f"The PLC's program differs in {pages} {ranges(differ)} ({words})."
+            words = counted(plan.comparison.word_count, "word")
+            yield f"The PLC's program differs in {page_ranges(differ)} ({words})."
         else:
             yield "The PLC's program is that of FILE already."
         if plan.running:

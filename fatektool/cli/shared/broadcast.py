@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from fatektool.cli.shared.documents import broadcast_document
+from fatektool.counts import counted
 from fatektool.errors import UsageError
 
 if TYPE_CHECKING:
@@ -66,6 +67,6 @@ def send_to_all(
         for request in requests:
             plc.broadcast(request)
         document = broadcast_document(plc, command, len(requests))
-    count = f"{len(requests)} request{'' if len(requests) == 1 else 's'}"
+    count = counted(len(requests), "request")
     sent = f"'{command}': {count} sent to every PLC on the line"
     voice.show(document, [sent, "PLCs do not reply to broadcasts, so success cannot be checked"])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from fatektool.cli.shared.addressee import ExchangeTime, with_status
 from fatektool.cli.shared.write_back import Offer, WriteCommand
-from fatektool.counts import spent
+from fatektool.counts import counted, spent
 from fatektool.jobs.snapshots.write_values import SafetySnapshot, ValuesPlan, Written, write_values
 from fatektool.protocol.values import raw_text
 
@@ -41,7 +41,7 @@ def offer_of(
     here = with_status(plc, plan.status)
     count = len(plan.changes)
     time = [("time", pace.time_of(plan.exchanges(plc)))] if count else []
-    question = f"Write {count} value{'' if count == 1 else 's'} into {here.name}?"
+    question = f"Write {counted(count, 'value')} into {here.name}?"
     return Offer(writing, here, [*rows, *time], [*lines], question, "values")
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from click.core import ParameterSource
 
+from fatektool.counts import counted
 from fatektool.errors import DataError, UsageError
 from fatektool.files.atomic import read_bounded
 from fatektool.protocols import PROTOCOLS
@@ -72,9 +73,8 @@ def tell_unknown(replay: Replay, voice: Voice) -> None:
     often = sorted(replay.unknown.items(), key=lambda item: -item[1])
     names = [_named(request) + (f" ({count} times)" if count > 1 else "") for request, count in often]
     more = ["…"] if len(names) > _MOST_NAMED else []
-    s = "s" if replay.unknown_count > 1 else ""
     voice.say(
-        f"{replay.unknown_count} request{s} not in the trace, not answered:"
+        f"{counted(replay.unknown_count, 'request')} not in the trace, not answered:"
         f" {', '.join(names[:_MOST_NAMED] + more)}"
     )
 

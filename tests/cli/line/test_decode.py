@@ -41,7 +41,7 @@ def test_a_wrong_checksum_is_shown(cli: Cli) -> None:
     done = cli("decode", STATUS.hex().replace("4337", "4338"))
     assert done.code == 5
     assert "WRONG: expected C7" in done.out
-    assert done.err == "warning: 1 of 1 frames is damaged\n"
+    assert done.err == "warning: 1 of 1 frame damaged\n"
 
 
 def test_what_a_frame_is_can_be_said(cli: Cli) -> None:

@@ -13,6 +13,7 @@ from fatektool.cli.many.outcome import JobResult
 from fatektool.cli.programs.program_files import comments_of_entry
 from fatektool.cli.shared.options import PATH
 from fatektool.cli.shared.places import require_folder_for
+from fatektool.counts import counted
 from fatektool.errors import PlcError, UsageError
 from fatektool.files.atomic import make_folder
 from fatektool.jobs.snapshots.comments import snapshot_with_comments
@@ -67,7 +68,7 @@ def _work(voice: Voice, folder: Path, keep: Keep | None) -> Callable[[PlcEntry, 
         make_folder(own)
         path = save_dated(snapshot, as_json(snapshot), own, suffix="json", keep=keep)
         wrong = f", {len(snapshot.errors)} refused: {', '.join(snapshot.errors)}"[:200]
-        words = f"{len(snapshot.values)} values{wrong if snapshot.errors else ''}"
+        words = f"{counted(len(snapshot.values), 'value')}{wrong if snapshot.errors else ''}"
         code = PlcError.exit_code if snapshot.errors else 0
         return JobResult(code, snapshot.document(), words, path)
 

@@ -9,6 +9,7 @@ import click
 from fatektool.cli.many.inventory.documents import check_document
 from fatektool.cli.shared.inventory_file import inventory_option
 from fatektool.cli.shared.options import voice_options
+from fatektool.counts import counted
 from fatektool.errors import FatektoolError
 from fatektool.inventory.entries import InventoryFault
 from fatektool.inventory.find import inventory_path, no_inventory
@@ -37,8 +38,7 @@ def check_command(inventory: Path | None, voice: Voice) -> int:
     found.faults += _faults_of_files(found)
     document = check_document(path, found)
     lines = [f"{path}: {fault}" for fault in found.faults]
-    noun = "PLC" if len(found.plcs) == 1 else "PLCs"
-    voice.show(document, lines or [f"{path}: {len(found.plcs)} {noun}, no faults"])
+    voice.show(document, lines or [f"{path}: {counted(len(found.plcs), 'PLC')}, no faults"])
     return 1 if found.faults else 0
 
 

@@ -10,7 +10,7 @@ from fatektool.ladder.circuit.pins import pins_of
 from fatektool.ladder.circuit.roles import Role
 from fatektool.ladder.power.flow import comparison_sign
 from fatektool.ladder.power.values import operand_number, output_contact, signed
-from fatektool.program.image import ranges
+from fatektool.program.image import page_ranges
 from fatektool.project.comments import comment_of
 from fatektool.protocol.elements import Element
 
@@ -229,14 +229,15 @@ class WhyWords:
 
 def program_words(found: SameProgram) -> str:
     """How much of the PLC's program is known to be the file's, in one sentence without its full stop."""
-    pages = f"page{'s' if len(found.pages) > 1 else ''} {ranges(found.pages)}" if found.pages else ""
+    pages = page_ranges(found.pages) if found.pages else ""
     match found.sameness:
         case Sameness.UNKNOWN:
             return f"the PLC's program could not be compared with {found.file.name}: {found.reason}"
         case Sameness.DIFFERENT:
+            differ = "differs" if len(found.different) == 1 else "differ"
             return (
-                f"the PLC's program is not the one in {found.file.name}: page"
-                f"{'s' if len(found.different) > 1 else ''} {ranges(found.different)} of {pages} differ; "
+                f"the PLC's program is not the one in {found.file.name}: "
+                f"{page_ranges(found.different)} of {pages} {differ}; "
                 "what is shown is the file's: see 'fatektool verify'"
             )
     whole = "length and checksum of the code are the same" if found.has_sums else "no checksum is known"

@@ -234,7 +234,7 @@ def test_a_file_is_kept(fb: Plant, monkeypatch: pytest.MonkeyPatch) -> None:
     assert not sent
     done = fb.cli("link", "table", "save", "R0", "t.toml", "--kind", "md0", "--force")
     assert done.code == 0
-    assert "1 faults" in done.err
+    assert "1 fault" in done.err
     assert Path("t.toml").read_text(encoding="utf-8") == 'kind = "md0"\n'
 
 

@@ -12,6 +12,7 @@ from fatektool.cli.line.link.table.view import table_lines
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.documents import where
 from fatektool.cli.shared.options import PATH, voice_options
+from fatektool.counts import counted
 from fatektool.files.atomic import read_bounded, require_place, write_whole
 from fatektool.jobs.plcports.host import LinkHost, read_host
 from fatektool.jobs.plcports.tables import parse_start, read_table
@@ -98,5 +99,7 @@ def save_command(sr: str, file: Path, connection: Connection, voice: Voice, *, k
     for warning in host.warnings():
         voice.warn(warning)
     if faults:
-        voice.warn(f"the table has {len(faults)} faults: 'fatektool link table check {file}' shows them")
+        voice.warn(
+            f"the table has {counted(len(faults), 'fault')}: 'fatektool link table check {file}' shows them"
+        )
     return 0

@@ -21,6 +21,7 @@ from fatektool.cli.shared.put_values import (
 )
 from fatektool.cli.shared.write_back import WriteCommand
 from fatektool.cli.shared.write_options import Terms, write_options
+from fatektool.counts import counted
 from fatektool.errors import DataError, PlcError
 from fatektool.files.atomic import read_bounded
 from fatektool.jobs.plcports.host import read_host
@@ -71,7 +72,7 @@ def write_command(
             voice.warn(warning)
         if plan.changes and plan.present.running:
             voice.warn("the PLC is in RUN: an instruction may use the table while it is half new")
-        rows = [("file", file), ("to", f"{start}, {len(words)} registers")]
+        rows = [("file", file), ("to", f"{start}, {counted(len(words), 'register')}")]
         offer = offer_of(plc, plan, writing, pace, rows=rows, lines=table_lines(table, faults))
         done = put_values(plc, plan, offer, file.stem)
         changes = changes_document(plan, done, dry_run=terms.dry_run)
