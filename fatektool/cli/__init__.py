@@ -97,6 +97,9 @@ def _invoke(words: list[str]) -> int:
     if completing:
         from click.shell_completion import shell_complete
 
+        from fatektool.cli.shared.shells import add_shells
+
+        add_shells()
         return shell_complete(app, {}, "fatektool", "_FATEKTOOL_COMPLETE", completing)
     try:
         with app.make_context("fatektool", list(words or ["--help"]), obj=tuple(words)) as context:

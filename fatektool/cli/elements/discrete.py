@@ -15,7 +15,7 @@ from fatektool.cli.shared.addressee import look
 from fatektool.cli.shared.broadcast import broadcast_option, means_all, send_to_all
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.modbus_map import modbus_map_option
-from fatektool.cli.shared.options import yes_option
+from fatektool.cli.shared.options import completing, yes_option
 from fatektool.errors import PlcError
 from fatektool.jobs.elements.discretes import SWITCHES, control_discretes, parse_discretes, read_discretes
 from fatektool.protocol.commands import Command, Control, ControlDiscrete
@@ -45,7 +45,7 @@ def _control(name: str, control: Control, text: str) -> None:
         needs += (Command.READ_DISABLED,)
 
     @discrete_command.command(name, help=text, epilog=f"Example: fatektool discrete {name} M16 Y0-Y3 -p sim:")
-    @click.argument("elements", nargs=-1, required=True)
+    @click.argument("elements", nargs=-1, shell_complete=completing("complete_elements"), required=True)
     @broadcast_option
     @yes_option
     @connection_options
@@ -74,7 +74,7 @@ _control("reset", Control.RESET, "Switch discretes off.")
 
 
 @discrete_command.command("list", epilog="Example: fatektool discrete list Y10-Y16 -p sim:")
-@click.argument("elements", nargs=-1, required=True)
+@click.argument("elements", nargs=-1, shell_complete=completing("complete_elements"), required=True)
 @connection_options
 @modbus_map_option
 def list_command(elements: tuple[str, ...], connection: Connection, voice: Voice) -> int:

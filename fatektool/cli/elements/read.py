@@ -12,6 +12,7 @@ from fatektool.cli.elements.values import SELECTION, value_lines, warn_of
 from fatektool.cli.programs.program_files import comments_for, comments_options
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.modbus_map import modbus_map_option
+from fatektool.cli.shared.options import completing
 from fatektool.cli.shared.output import elements_bar
 from fatektool.errors import PlcError
 from fatektool.jobs.elements.items import comments_of, read_items
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
         f"bits.\n\n{SELECTION}"
     ),
 )  # fmt: skip
-@click.argument("elements", nargs=-1, required=True)
+@click.argument("elements", nargs=-1, shell_complete=completing("complete_elements"), required=True)
 @comments_options
 @connection_options
 @modbus_map_option

@@ -16,7 +16,7 @@ from fatektool.cli.programs.program_files import comments_for, comments_options
 from fatektool.cli.shared.bars import levels
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.modbus_map import modbus_map_option
-from fatektool.cli.shared.options import SecondsType
+from fatektool.cli.shared.options import SecondsType, completing
 from fatektool.cli.shared.report import report_option, watch_report
 from fatektool.cli.shared.rounds import RoundTimes, failed_in_line, paced_rounds
 from fatektool.cli.shared.streams import reader_is_gone
@@ -50,7 +50,7 @@ _AROUND: Final = 4  # title, header, what is left out, and the line of the curso
     "Another process can use the line between two rounds.\n\n"
     f"{SELECTION}",
 )
-@click.argument("elements", nargs=-1)
+@click.argument("elements", nargs=-1, shell_complete=completing("complete_elements"))
 @spec_options
 @click.option(
     "--interval",

@@ -12,7 +12,7 @@ from fatektool.cli.shared.addressee import look
 from fatektool.cli.shared.broadcast import broadcast_option, means_all, send_to_all
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.modbus_map import modbus_map_option
-from fatektool.cli.shared.options import yes_option
+from fatektool.cli.shared.options import completing, yes_option
 from fatektool.errors import PlcError
 from fatektool.jobs.elements.assignment import parse_assignments, write_assignments
 from fatektool.jobs.elements.items import value_of
@@ -26,7 +26,13 @@ if TYPE_CHECKING:
 
 
 @click.command("write", epilog="Example: fatektool write R12=4261 WM8=0x5555 DR2=-1 D4:f32=1.5 Y0=on -p sim:")
-@click.argument("assignments", nargs=-1, required=True, metavar="ELEMENT=VALUE…")
+@click.argument(
+    "assignments",
+    nargs=-1,
+    shell_complete=completing("complete_elements"),
+    required=True,
+    metavar="ELEMENT=VALUE…",
+)
 @broadcast_option
 @yes_option
 @connection_options

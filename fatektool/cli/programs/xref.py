@@ -9,7 +9,7 @@ import click
 from fatektool.cli.programs.documents import xref_document
 from fatektool.cli.programs.program_files import comments_beside, comments_options, program_file, warn_of_code
 from fatektool.cli.shared.inventory_file import inventory_option
-from fatektool.cli.shared.options import PATH, voice_options
+from fatektool.cli.shared.options import PATH, completing, voice_options
 from fatektool.errors import UsageError
 from fatektool.ladder.addresses import spans_of
 from fatektool.ladder.cross_reference import CrossReference, FindingKind
@@ -32,7 +32,7 @@ _PLACES_SHOWN = 12
 
 @click.command("xref", epilog="Example: fatektool xref press.pdw X0 Y0")
 @click.argument("file", type=PATH)
-@click.argument("elements", nargs=-1)
+@click.argument("elements", nargs=-1, shell_complete=completing("complete_elements"))
 @comments_options
 @inventory_option
 @voice_options

@@ -17,7 +17,7 @@ from fatektool.address import CHECKS, DEFAULT_FORMATS, DEFAULTS, PlcAddress
 from fatektool.checks import YesNo
 from fatektool.cli.shared.connection import Connection
 from fatektool.cli.shared.inventory_file import complete_target, inventory_option
-from fatektool.cli.shared.options import PATH, ConnectionOption, type_of, voice_options
+from fatektool.cli.shared.options import PATH, ConnectionOption, completing, type_of, voice_options
 from fatektool.cli.shared.output import print_stderr
 from fatektool.errors import UsageError
 from fatektool.inventory.find import plc_named
@@ -26,9 +26,18 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from pathlib import Path
 
+    from click.shell_completion import CompletionItem
+
 F = TypeVar("F", bound="Callable[..., Any]")
 
 _GIVEN: Final = {ParameterSource.COMMANDLINE, ParameterSource.ENVIRONMENT}
+
+
+_COMPLETE: Final[dict[str, Callable[..., list[CompletionItem]]]] = {
+    "target": complete_target,
+    "baud": completing("complete_baud"),
+    "format": completing("complete_line"),
+}
 
 
 class Row(NamedTuple):
@@ -67,7 +76,7 @@ class Row(NamedTuple):
             show_default=default not in {None, False},
             metavar=self.metavar,
             envvar=self.variable,
-            shell_complete=complete_target if self.field == "target" else None,
+            shell_complete=_COMPLETE.get(self.field),
             help=self.help + (f"  [env: {self.variable}]" if self.variable else ""),
         )
 

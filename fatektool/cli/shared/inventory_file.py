@@ -12,12 +12,12 @@ from fatektool.errors import FatektoolError
 from fatektool.inventory.find import FILE_NAME, VARIABLE, inventory_path, no_inventory, whole_inventory
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
     from pathlib import Path
 
     from click.shell_completion import CompletionItem
 
-    from fatektool.inventory.entries import Inventory
+    from fatektool.inventory.entries import Inventory, PlcEntry
 
 F = TypeVar("F", bound="Callable[..., Any]")
 
@@ -58,18 +58,34 @@ def complete_target(context: click.Context, _: click.Parameter, incomplete: str)
 
 def complete_names(named: Path | None, incomplete: str) -> list[CompletionItem]:
     """Completion: names that begin with this, with their targets; none if the inventory cannot be read."""
+    return _beginning(_names(_plcs(named)), incomplete)
+
+
+def complete_selection(named: Path | None, incomplete: str) -> list[CompletionItem]:
+    """The same, and tags with the names of their PLCs."""
+    plcs = _plcs(named)
+    tags: dict[str, list[str]] = {}
+    for entry in plcs:
+        for tag in entry.tags:
+            tags.setdefault(tag, []).append(entry.name)
+    return _beginning({tag: f"tag of {', '.join(of)}" for tag, of in tags.items()} | _names(plcs), incomplete)
+
+
+def _names(plcs: Iterable[PlcEntry]) -> dict[str, str]:
+    return {entry.name: f"{entry.address.target}, station {entry.address.station}" for entry in plcs}
+
+
+def _beginning(words: dict[str, str], incomplete: str) -> list[CompletionItem]:
     from click.shell_completion import CompletionItem
 
+    return [CompletionItem(word, help=said) for word, said in words.items() if word.startswith(incomplete)]
+
+
+def _plcs(named: Path | None) -> list[PlcEntry]:
     from fatektool.inventory.load import load_inventory
 
     try:
         path = inventory_path(named)
-        found = None if path is None else load_inventory(path)
+        return [] if path is None else list(load_inventory(path).plcs.values())
     except FatektoolError:  # completion shows no messages; the command will
         return []
-    plcs = () if found is None else found.plcs.values()
-    return [
-        CompletionItem(entry.name, help=f"{entry.address.target}, station {entry.address.station}")
-        for entry in plcs
-        if entry.name.startswith(incomplete)
-    ]

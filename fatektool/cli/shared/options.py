@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
     from pathlib import Path
 
+    from click.shell_completion import CompletionItem
+
 F = TypeVar("F", bound="Callable[..., Any]")
 
 CONNECTION: Final = "Connection"
@@ -52,6 +54,18 @@ class FilePath(click.Path):
 
 
 PATH = FilePath()
+
+
+def completing(name: str) -> Callable[..., list[CompletionItem]]:
+    """A function of ``complete.py`` for an option's ``shell_complete``; it is loaded when a shell asks."""
+
+    def complete(*arguments: Any) -> list[CompletionItem]:
+        from fatektool.cli.shared import complete as functions
+
+        found: list[CompletionItem] = getattr(functions, name)(*arguments)
+        return found
+
+    return complete
 
 
 def is_standard(path: Path | None) -> bool:

@@ -8,14 +8,14 @@ from typing import Any
 
 import click
 
-from fatektool.cli.shared.options import voice_options
+from fatektool.cli.shared.options import completing, voice_options
 from fatektool.cli.shared.output import Voice, print_json
 from fatektool.cli.tools.documents import schemas_document
 from fatektool.errors import UsageError
 
 
 @click.command("schema", epilog="Example: fatektool schema backup")
-@click.argument("name", required=False)
+@click.argument("name", required=False, shell_complete=completing("complete_schema"))
 @voice_options
 def schema_command(name: str | None, voice: Voice) -> None:
     """Print the JSON Schema of the document NAME; without NAME list the names."""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fatektool.address import DEFAULT_FORMATS
-from fatektool.cli.shared.options import PATH, voice_options
+from fatektool.cli.shared.options import PATH, completing, voice_options
 from fatektool.cli.shared.output import print_json
 from fatektool.cli.shared.pairs import apart, given, together
 from fatektool.cli.tools.documents import simulate_document
@@ -93,6 +93,7 @@ _DEFAULT_MODELS = ", ".join(f"{slave.model} with {name}" for name, slave in SLAV
 @click.option(
     "--baud",
     type=click.IntRange(50, 4_000_000),
+    shell_complete=completing("complete_baud"),
     metavar="N",
     help="Baud rate: answers take their time on such a line.",
 )
@@ -102,6 +103,7 @@ _DEFAULT_MODELS = ", ".join(f"{slave.model} with {name}" for name, slave in SLAV
 @click.option(
     "--line",
     "line_format",
+    shell_complete=completing("complete_line"),
     metavar="7E1",
     help=f"Bits per character, for --baud.  [default: {DEFAULT_FORMATS}]",
 )
@@ -113,6 +115,7 @@ _DEFAULT_MODELS = ", ".join(f"{slave.model} with {name}" for name, slave in SLAV
     "--fault",
     multiple=True,
     metavar="KIND=P",
+    shell_complete=completing("complete_fault"),
     help=f"A fault with probability P: {', '.join(PROBABILITY_KINDS)}; bit-errors=P, for each byte;"
     " power-cut=N, at the N-th write of a page.",
 )

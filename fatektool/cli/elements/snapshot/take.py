@@ -15,7 +15,7 @@ from fatektool.cli.elements.values import SELECTION, warn_of
 from fatektool.cli.programs.program_files import comments_for, comments_options
 from fatektool.cli.shared.connection_options import connection_options_but_format
 from fatektool.cli.shared.modbus_map import modbus_map_option
-from fatektool.cli.shared.options import PATH, standard
+from fatektool.cli.shared.options import PATH, completing, standard
 from fatektool.cli.shared.output import elements_bar
 from fatektool.cli.shared.places import require_folder_for, require_free
 from fatektool.cli.shared.report import report_option, write_snapshot_report
@@ -68,7 +68,7 @@ def either_format(function: F) -> F:
     epilog="Example: fatektool snapshot --spec press.toml -p sim: --append press.ndjson --keep 90d",
     help=f"Read data from the PLC and save it.\n\n{SELECTION}",
 )
-@click.argument("elements", nargs=-1)
+@click.argument("elements", nargs=-1, shell_complete=completing("complete_elements"))
 @spec_options
 @click.option("--all", "whole", is_flag=True, help="All elements that the PLC has, by its status (53).")
 @click.option(

@@ -15,7 +15,7 @@ from fatektool.cli.many.fleet.view import View
 from fatektool.cli.many.fleet.words import summary_words
 from fatektool.cli.many.outcome import JobResult, Outcome, failure
 from fatektool.cli.shared.connection import Connection
-from fatektool.cli.shared.inventory_file import complete_names, inventory_option, open_inventory
+from fatektool.cli.shared.inventory_file import complete_selection, inventory_option, open_inventory
 from fatektool.cli.shared.options import SecondsType, voice_options
 from fatektool.errors import FatektoolError
 from fatektool.files.times import utc
@@ -58,7 +58,7 @@ class Orders:
 
 
 def _complete_selection(context: click.Context, _: click.Parameter, incomplete: str) -> list[Any]:
-    return complete_names(context.params.get("inventory"), incomplete)
+    return complete_selection(context.params.get("inventory"), incomplete)
 
 
 def fleet_options(function: F) -> F:

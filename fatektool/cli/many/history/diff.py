@@ -8,7 +8,7 @@ import click
 
 from fatektool.cli.many.history.options import history_option
 from fatektool.cli.programs.differences import show_differences
-from fatektool.cli.shared.options import voice_options
+from fatektool.cli.shared.options import completing, voice_options
 from fatektool.cli.shared.report import report_option
 from fatektool.history.history import History
 from fatektool.project.comparison import compare_programs
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 @click.command("diff", epilog="Example: fatektool history diff press-3 ~1 --history plc-history")
-@click.argument("name")
+@click.argument("name", shell_complete=completing("complete_history"))
 @click.argument("a", required=False, default="~1")
 @click.argument("b", required=False, default="HEAD")
 @report_option

@@ -10,7 +10,7 @@ from fatektool.cli.many.history.documents import (
     export_document,
 )
 from fatektool.cli.many.history.options import history_option, name_and_revision
-from fatektool.cli.shared.options import PATH, is_standard, voice_options
+from fatektool.cli.shared.options import PATH, completing, is_standard, voice_options
 from fatektool.cli.shared.output import shown_time, table
 from fatektool.cli.shared.pairs import together
 from fatektool.cli.shared.streams import print_bytes
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 @click.command(
     "export", epilog="Example: fatektool history export press-3@~1 before.json --history plc-history"
 )
-@click.argument("which", metavar="NAME[@REV]")
+@click.argument("which", shell_complete=completing("complete_history"), metavar="NAME[@REV]")
 @click.argument("file", type=PATH)
 @click.option("--force", is_flag=True, help="Replace FILE if it exists.")
 @history_option

@@ -12,7 +12,7 @@ from fatektool.cli.many.history.documents import (
     log_document,
 )
 from fatektool.cli.many.history.options import history_option
-from fatektool.cli.shared.options import voice_options
+from fatektool.cli.shared.options import completing, voice_options
 from fatektool.cli.shared.output import shown_time
 from fatektool.files.times import utc
 from fatektool.history.history import History
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 @click.command("log", epilog="Example: fatektool history log press-3 --history plc-history -n 10")
-@click.argument("name", required=False)
+@click.argument("name", shell_complete=completing("complete_history"), required=False)
 @click.option("-n", "--limit", type=click.IntRange(1), metavar="N", help="Only the newest N changes.")
 @history_option
 @voice_options

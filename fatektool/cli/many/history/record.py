@@ -10,7 +10,7 @@ from fatektool.cli.many.history.documents import (
     record_document,
 )
 from fatektool.cli.many.history.options import history_option
-from fatektool.cli.shared.options import PATH, SecondsType, voice_options
+from fatektool.cli.shared.options import PATH, SecondsType, completing, voice_options
 from fatektool.cli.shared.output import table
 from fatektool.errors import PushFailed
 from fatektool.history.history import History
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 @click.command("record", epilog="Example: fatektool history record press-3 press.json --history plc-history")
-@click.argument("name")
+@click.argument("name", shell_complete=completing("complete_history"))
 @click.argument("file", type=PATH)
 @click.option(
     "--push",

@@ -14,7 +14,7 @@ from fatektool.cli.many.history.options import history_option, name_and_revision
 from fatektool.cli.programs.differences import change_lines
 from fatektool.cli.programs.file_view import backup_rows
 from fatektool.cli.shared.image_words import warn_of_image
-from fatektool.cli.shared.options import voice_options
+from fatektool.cli.shared.options import completing, voice_options
 from fatektool.cli.shared.output import shown_time, table
 from fatektool.files.times import utc
 from fatektool.history.history import History
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 @click.command("show", epilog="Example: fatektool history show press-3@~1 --history plc-history")
-@click.argument("which", metavar="NAME[@REV]")
+@click.argument("which", shell_complete=completing("complete_history"), metavar="NAME[@REV]")
 @history_option
 @voice_options
 def show_command(which: str, folder: Path, voice: Voice) -> None:
