@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from itertools import chain
 from typing import TYPE_CHECKING, Final
 
+from fatektool.cli.programs.data_view import comparison_document, comparison_lines
 from fatektool.cli.programs.documents import diff_document
 from fatektool.cli.shared.report import write_report
 from fatektool.counts import counted
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
     from fatektool.cli.shared.output import Voice
     from fatektool.ladder.differences import NetworkChange
     from fatektool.program.compare import Comparison, PageDifference
+    from fatektool.program.data.compare import DataComparison
     from fatektool.project.comparison import ProgramComparison
 
 _COLUMNS: Final = 4
@@ -32,6 +35,7 @@ def show_differences(
     report: Path | None = None,
     *,
     comments: Mapping[str, str] | None = None,
+    data: DataComparison | None = None,
 ) -> int:
     """Print what differs between two programs; give the exit code.
 
@@ -42,8 +46,11 @@ def show_differences(
         voice: prints.
         report: the page to write; None for none.
         comments: of elements, shown beside the instructions.
+        data: the comparison of their data; None if they are not compared.
     """
     document = diff_document(a, b, found, comments)
+    if data is not None:
+        document |= {"same": found.same and data.same, "data": comparison_document(data)}
     code = ", same code" if found.same_code else ""
     same = f"same: {len(found.a.pages)} pages{code}"
     if report is not None and found.b is not None:
@@ -52,9 +59,11 @@ def show_differences(
         networks = found.networks or ()
         html = diff_report(document, found.a, found.b, time=utc(), changes=networks, comments=comments)
         write_report(report, html)
-    voice.show(document, program_lines(found, same, (a[0], b[0]), comments, words=voice.verbose))
+    lines = program_lines(found, same, (a[0], b[0]), comments, words=voice.verbose)
+    data_lines = () if data is None else comparison_lines(data, (a[0], b[0]))
+    voice.show(document, chain(lines, data_lines))
     say_how_to_see_words(found, voice)
-    return 0 if found.same else 1
+    return 0 if document["same"] else 1
 
 
 def difference_lines(found: Comparison, same: str, a: str, b: str, *, words: bool) -> Iterator[str]:

@@ -14,7 +14,7 @@ from fatektool.cli.shared.image_words import warn_of_image
 from fatektool.cli.shared.options import PATH
 from fatektool.cli.shared.output import Voice, table
 from fatektool.cli.shared.pairs import together
-from fatektool.cli.shared.unfinished import forget, record_of
+from fatektool.cli.shared.unfinished import DATA, forget, record_of
 from fatektool.cli.shared.write_back import Offer, WriteCommand
 from fatektool.cli.shared.write_options import Terms, write_options
 from fatektool.counts import counted, spent
@@ -83,7 +83,7 @@ def restore_command(
     backup = _backup_in(file)
     options = RestoreOptions(stop, run, changed_only, terms.rollback, any_header, single_pass, data, system)
     data_of(backup, options)
-    writing = WriteCommand(connection, voice, terms, file, *(["data"] if data else []))
+    writing = WriteCommand(connection, voice, terms, file, *(DATA if data else ()))
     with writing.open(Command.READ_PAGE, Command.WRITE_PAGE) as plc, voice.progress() as bar:
         pace = ExchangeTime(plc)
         known = known_before_restore(backup.program, file, writing.folder, plc.link.station)

@@ -29,6 +29,9 @@ if TYPE_CHECKING:
     from fatektool.cli.shared.output import Voice
     from fatektool.jobs.write_back.record import Unfinished
 
+DATA = ("data",)
+"""What distinguishes the record of a restore of program and data from that of the program alone."""
+
 
 def record_of(target: str, station: int, *about: str) -> str | None:
     """The file for the record of a write into this PLC; None for a PLC that is new each time (``sim:``).
