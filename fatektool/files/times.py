@@ -17,9 +17,7 @@ def stamp(created: str) -> str:
 
 def local_clock(created: str) -> str:
     """The same moment on this computer's clock, for a screen: ``04:15:00``."""
-    from calendar import timegm
-
-    return time.strftime("%H:%M:%S", time.localtime(timegm(time.strptime(created, "%Y-%m-%dT%H:%M:%SZ"))))
+    return time.strftime("%H:%M:%S", time.localtime(_seconds(created)))
 
 
 def local(created: str) -> str:
@@ -27,11 +25,14 @@ def local(created: str) -> str:
 
     What is no time of this form, and all of it where the clock is UTC, stays as it is.
     """
-    from calendar import timegm
-
     try:
-        seconds = timegm(time.strptime(created, "%Y-%m-%dT%H:%M:%SZ"))
-        here = time.localtime(seconds)
+        here = time.localtime(_seconds(created))
     except (ValueError, OverflowError, OSError):
         return created
     return created if not here.tm_gmtoff else time.strftime("%Y-%m-%d %H:%M:%S %z", here)
+
+
+def _seconds(created: str) -> int:
+    from calendar import timegm  # which few commands need
+
+    return timegm(time.strptime(created, "%Y-%m-%dT%H:%M:%SZ"))
