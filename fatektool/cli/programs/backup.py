@@ -13,10 +13,10 @@ from fatektool.cli.programs.raw_file import require_raw_name
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.image_words import warn_of_image
 from fatektool.cli.shared.options import PATH, is_standard
-from fatektool.cli.shared.output import Voice, table
+from fatektool.cli.shared.output import Voice, passed, table
 from fatektool.cli.shared.pairs import apart, together
 from fatektool.cli.shared.streams import print_bytes
-from fatektool.counts import counted, spent
+from fatektool.counts import counted
 from fatektool.errors import FatektoolError, PlcError
 from fatektool.files.atomic import require_place, write_whole
 from fatektool.files.times import stamp, utc
@@ -102,7 +102,7 @@ def backup_command(
         ("pages", found.proof_words),
         ("sha256", program.sha256),
         *data_rows(found.data),
-        ("took", spent(result.duration_s)),
+        ("took", passed(plc, result.duration_s)),
     ]
     voice.show(saved_document(result, path), table(rows))
     return code

@@ -2,31 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
-
-import click
+from typing import TYPE_CHECKING
 
 from fatektool.cli.shared.output import shown_time
-from fatektool.counts import counted
-from fatektool.jobs.elements.reads import named
-from fatektool.jobs.elements.spans import spans_of
-from fatektool.protocol.values import raw_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fatektool.cli.shared.output import Voice
-    from fatektool.program.data.compare import DataComparison, ValueDifference
     from fatektool.program.data.part import DataPart
-
-_MOST_SHOWN: Final = 40
-
-ignore_option = click.option(
-    "--ignore",
-    multiple=True,
-    metavar="GLOB",
-    help="Data that are not compared: D100, 'D1??'. Can be given several times.",
-)
 
 
 def data_rows(data: DataPart | None) -> Iterator[tuple[str, object]]:
@@ -49,52 +33,3 @@ def warn_of_data(data: DataPart, voice: Voice) -> None:
     """Warn of elements without a value."""
     for span, why in data.errors.items():
         voice.warn(f"{span}: {why}")
-
-
-def comparison_lines(found: DataComparison, sides: tuple[str, str]) -> Iterator[str]:
-    """What differs between two parts ``data``.
-
-    Args:
-        found: the comparison.
-        sides: what the first and the second are called.
-    """
-    if found.same:
-        yield "data same: kept values, settings and disabled discretes"
-    else:
-        counts = counted(len(found.constant), "value"), counted(len(found.disabled), "disabled discrete")
-        yield f"data differ: {' and '.join(counts)} ({sides[0]} -> {sides[1]})"
-    for each in found.constant[:_MOST_SHOWN]:
-        yield f"  {each.element}  {_text(each, each.a)} -> {_text(each, each.b)}"
-    if len(found.constant) > _MOST_SHOWN:
-        spans = spans_of(each.element for each in found.constant[_MOST_SHOWN:])
-        yield f"  {len(found.constant) - _MOST_SHOWN} more: {named(spans)}"
-    for name, states in found.disabled.items():
-        yield f"  {name}  {' -> '.join(map(_state, states))}"
-    if found.running:
-        running = f"{counted(len(found.running), 'value')}, {named(spans_of(found.running))}"
-        yield f"not compared, as they change by themselves: {running}"
-
-
-def comparison_document(found: DataComparison) -> dict[str, Any]:
-    """The same for JSON."""
-    return {
-        "same": found.same,
-        "constant": [
-            {"element": str(each.element), "a": _raw(each, each.a), "b": _raw(each, each.b)}
-            for each in found.constant
-        ],
-        "disabled": [{"element": name, "a": a, "b": b} for name, (a, b) in found.disabled.items()],
-        "running": spans_of(found.running),
-    }
-
-
-def _raw(each: ValueDifference, value: int | None) -> str | None:
-    return None if value is None else raw_text(value, each.element.kind.bits)
-
-
-def _text(each: ValueDifference, value: int | None) -> str:
-    return _raw(each, value) or "no value"
-
-
-def _state(on: bool | None) -> str:  # a state, not a switch
-    return "enabled" if on is None else f"disabled {'on' if on else 'off'}"

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fatektool.cli.programs.data_view import ignore_option
+from fatektool.cli.programs.data_differences import ignore_option
 from fatektool.cli.programs.differences import show_differences
 from fatektool.cli.programs.program_files import (
     comments_from,

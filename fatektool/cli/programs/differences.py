@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import chain
 from typing import TYPE_CHECKING, Final
 
-from fatektool.cli.programs.data_view import comparison_document, comparison_lines
+from fatektool.cli.programs.data_differences import comparison_document, comparison_lines
 from fatektool.cli.programs.documents import diff_document
 from fatektool.cli.shared.report import write_report
 from fatektool.counts import counted

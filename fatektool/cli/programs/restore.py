@@ -17,7 +17,7 @@ from fatektool.cli.shared.pairs import together
 from fatektool.cli.shared.unfinished import DATA, forget, record_of
 from fatektool.cli.shared.write_back import Offer, WriteCommand
 from fatektool.cli.shared.write_options import Terms, write_options
-from fatektool.counts import counted, spent
+from fatektool.counts import counted
 from fatektool.errors import PlcError, UsageError
 from fatektool.files.atomic import read_bounded
 from fatektool.jobs.programs.restore import (
@@ -242,7 +242,7 @@ def _lines(plan: RestorePlan, result: RestoreResult, offer: Offer, pace: Exchang
                     f"previous {offer.copied}",
                     f"saved in {kept}" if (kept := result.safety_backup) else "not saved",
                 ),
-                ("took", spent(pace.passed_s)),
+                ("took", pace.passed),
             ]
         )
     if not offer.writing.terms.dry_run:

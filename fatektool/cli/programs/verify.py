@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fatektool.cli.programs.data_view import comparison_document, comparison_lines, ignore_option
+from fatektool.cli.programs.data_differences import comparison_document, comparison_lines, ignore_option
 from fatektool.cli.programs.differences import program_lines, say_how_to_see_words
 from fatektool.cli.programs.documents import verify_document
 from fatektool.cli.programs.program_files import comments_for, comments_options, program_file
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.options import PATH
+from fatektool.cli.shared.output import passed
 from fatektool.cli.shared.pairs import together
 from fatektool.cli.shared.report import report_option, write_report
 from fatektool.cli.shared.unfinished import DATA, forget, record_of, warn_of_unfinished
-from fatektool.counts import spent
 from fatektool.errors import UsageError
 from fatektool.jobs.data.reading import read_data
 from fatektool.jobs.programs.verify import compare_with_plc
@@ -86,7 +86,7 @@ def verify_command(
         write_report(report, verify_report(document, found.a, found.networks or (), texts))
     lines = program_lines(found, same, (str(file), "PLC"), texts, words=voice.verbose)
     data_lines = () if compared is None else comparison_lines(compared, (str(file), "PLC"))
-    voice.show(document, chain(lines, data_lines, [f"took {spent(result.duration_s)}"]))
+    voice.show(document, chain(lines, data_lines, [f"took {passed(plc, result.duration_s)}"]))
     say_how_to_see_words(found, voice)
     return 0 if found.same and (compared is None or compared.same) else 1
 

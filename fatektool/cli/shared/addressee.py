@@ -19,7 +19,7 @@ import sys
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from fatektool.cli.shared.output import shown_time, table
+from fatektool.cli.shared.output import passed, shown_time, table
 from fatektool.cli.shared.unfinished import line_name
 from fatektool.counts import spent
 from fatektool.errors import LineError, UsageError
@@ -116,7 +116,7 @@ class ExchangeTime:
     """How long an exchange takes on this line, measured while a plan is made."""
 
     def __init__(self, plc: Plc) -> None:
-        self._link = plc.link
+        self._plc, self._link = plc, plc.link
         self._began = self._link.transport.clock()
         self._before = self._link.counters.exchanges
 
@@ -124,6 +124,11 @@ class ExchangeTime:
     def passed_s(self) -> float:
         """Seconds since it began."""
         return self._link.transport.clock() - self._began
+
+    @property
+    def passed(self) -> str:
+        """The same in words."""
+        return passed(self._plc, self.passed_s)
 
     def time_of(self, exchanges: int) -> str:
         """How long this number of further exchanges will take, in words."""

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from rich.progress import TaskID
 
+    from fatektool.client import Plc
     from fatektool.jobs.progress import Progress
 
 
@@ -34,6 +35,13 @@ direction."""
 def visible(text: str) -> str:
     """Text from a file, a PLC or a name: what a terminal would obey is shown as a code."""
     return text.translate(_OBEYED)
+
+
+def passed(plc: Plc, seconds: float) -> str:
+    """How long a job took, in words; nobody waited for a line that is simulated in this process."""
+    from fatektool.counts import spent
+
+    return f"{spent(seconds)} of simulated time" if plc.target.startswith("sim:") else spent(seconds)
 
 
 def shown_time(created: str, stream: TextIO | None = None) -> str:

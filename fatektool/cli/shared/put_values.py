@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from fatektool.cli.shared.addressee import ExchangeTime, with_status
 from fatektool.cli.shared.write_back import Offer, WriteCommand
-from fatektool.counts import counted, spent
+from fatektool.counts import counted
 from fatektool.jobs.snapshots.write_values import SafetySnapshot, ValuesPlan, Written, write_values
 from fatektool.protocol.values import raw_text
 
@@ -93,7 +93,7 @@ def result_lines(
         taken = count - len(done.not_taken)
         yield f"{taken} of {count} values written and read back, {plan.same} were equal already"
         yield offer.here.line
-        yield f"took {spent(pace.passed_s)}"
+        yield f"took {pace.passed}"
 
 
 def change_line(change: RegisterChange) -> str:

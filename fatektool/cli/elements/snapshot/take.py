@@ -16,10 +16,10 @@ from fatektool.cli.programs.program_files import comments_for, comments_options
 from fatektool.cli.shared.connection_options import connection_options_but_format
 from fatektool.cli.shared.modbus_map import modbus_map_option
 from fatektool.cli.shared.options import PATH, completing, standard
-from fatektool.cli.shared.output import elements_bar
+from fatektool.cli.shared.output import elements_bar, passed
 from fatektool.cli.shared.places import require_folder_for, require_free
 from fatektool.cli.shared.report import report_option, write_snapshot_report
-from fatektool.counts import counted, spent
+from fatektool.counts import counted
 from fatektool.errors import PlcError, UsageError
 from fatektool.files.atomic import write_whole
 from fatektool.jobs.snapshots.comments import snapshot_with_comments
@@ -130,7 +130,7 @@ def take_command(
     with connection.open(voice, needs=needs) as plc, elements_bar(voice, items, whole=whole) as bar:
         began = plc.link.transport.clock()
         snapshot = take_all(plc, bar.update) if whole else take_snapshot(plc, items, bar.update)
-        took = spent(plc.link.transport.clock() - began)
+        took = passed(plc, plc.link.transport.clock() - began)
     snapshot = snapshot_with_comments(snapshot, texts)
     values = counted(len(snapshot.values) - len(snapshot.errors), "value")
     if form == "prometheus":
