@@ -147,14 +147,21 @@ class _Report(Value):
         if "station" in instead:
             return "check --station"
         if "own request" in instead:
-            return "the PLC does not answer: check that it is on, that A and B are not swapped, and --station"
+            wires = "" if over_network(state.transport) else ", that A and B are not swapped,"
+            return f"the PLC does not answer: check that it is on{wires} and --station"
         if answers:
             return "the PLC is slow, or the line loses frames: try a longer --timeout or more --retries"
         if instead:
             return "check --baud, --line and --protocol, and the termination and shield of the line"
         if over_network(state.transport):
-            return f"check that the PLC is on, and --station. {AT_AN_ETHERNET_MODULE}"
-        return "check that the PLC is on, the cable, station, baud and format (factory: station 1, 9600 7E1)"
+            return f"check that the PLC is on, and --station; {_DOCTOR}. {AT_AN_ETHERNET_MODULE}"
+        return (
+            "check that the PLC is on, the cable, station, baud and format (factory: station 1, 9600 7E1); "
+            f"{_DOCTOR}"
+        )
+
+
+_DOCTOR: Final = "'fatektool doctor' looks for the cause"
 
 
 AT_AN_ETHERNET_MODULE: Final = (

@@ -128,9 +128,13 @@ def _histogram(bars: list[dict[str, Any]]) -> Iterator[str]:
         yield f"{part['from_ms']:>8.2f}-{part['to_ms']:<8.2f} {part['count']:>7} {drawn}".rstrip()
 
 
+_FOUND: Final = "answers-elsewhere"
+
+
 def findings(found: Iterable[dict[str, Any]]) -> Iterator[str]:
-    """A diagnosis as lines, the faults first."""
-    for finding in sorted(found, key=lambda finding: not finding["fault"]):
-        yield f"{'FAULT' if finding['fault'] else 'note'}: {finding['finding']}"
+    """A diagnosis as lines: where the PLC was found, the faults, notes."""
+    for finding in sorted(found, key=lambda finding: (finding["rule"] != _FOUND, not finding["fault"])):
+        mark = "FOUND" if finding["rule"] == _FOUND else "FAULT" if finding["fault"] else "note"
+        yield f"{mark}: {finding['finding']}"
         yield f"  seen: {finding['evidence']}"
         yield f"  do:   {finding['advice']}"

@@ -58,7 +58,9 @@ def _only_echo(case: Case) -> Finding | None:
         fault=True,
         finding="only the echo of the requests is received: no PLC answers",
         evidence=f"{result.total.sent} requests, {result.bytes_received} bytes received, all of them echo",
-        advice="the converter works; check that the PLC is on, the station, and wires A and B",
+        advice="the gateway returns each request; check that the PLC is on, and its station"
+        if case.network
+        else "the converter works; check that the PLC is on, the station, and wires A and B",
     )
 
 

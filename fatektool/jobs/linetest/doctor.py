@@ -1,14 +1,14 @@
 """The diagnosis of a PLC and its line: each fault with its evidence and what to do.
 
 A short loopback test comes first, with the rules of ``diagnosis``. If the line works, the PLC's own faults
-follow: those of its brief status (40), and of an FBs those of its high-speed link (``high_speed``). If a
-serial line does not work, the usual baud rates and formats are tried: a PLC that answers there explains why
-there is no answer here.
+follow: those of its brief status (40), and of an FBs those of its high-speed link (``high_speed``). If there
+is no answer, other stations, baud rates and formats are tried (``search``): a PLC that answers there explains
+why there is none here.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import LineError, PlcError, TransportClosed
@@ -18,22 +18,19 @@ from fatektool.jobs.linetest.finding import Case, Finding
 from fatektool.jobs.linetest.high_speed import high_speed_findings
 from fatektool.jobs.linetest.loopback.result import LoopbackPlan
 from fatektool.jobs.linetest.loopback.run import run_loopback
-from fatektool.jobs.linetest.scan import scan
-from fatektool.jobs.linetest.scan_result import ScanResult, ScanSetting, Station
-from fatektool.protocol.line_settings import BAUDS, FORMATS
-from fatektool.transport.base import LineSettings
+from fatektool.jobs.linetest.search import answers_elsewhere, search
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fatektool.client import Plc
     from fatektool.jobs.linetest.loopback.result import LoopbackResult
+    from fatektool.jobs.linetest.scan_result import ScanResult, Station
     from fatektool.protocol.status import BriefStatus
 
 FIRST_LOOK: Final = LoopbackPlan(count=6, max_error_rate=1.0)
+_USE_IT: Final = "use the station and the settings at which it answers"
 SHORT_TEST: Final = LoopbackPlan(count=120, duration_s=10.0)
-LONGEST_SEARCH_S: Final = 60.0
-FACTORY_STATION: Final = 1
 
 
 @dataclass(slots=True)
@@ -109,9 +106,11 @@ def examine(plc: Plc, on_step: Callable[[str, int, int], object] = lambda *_: No
         else:
             found.findings += _of_flags(found.brief)
             found.findings += high_speed_findings(plc)
-    elif link.transport.serial_settings is not None:
-        found.searched = _look_elsewhere(plc, on_step)
-        found.findings += [_answers_elsewhere(station) for station in found.elsewhere]
+    else:
+        found.searched = search(plc, on_step)
+        if found.elsewhere:
+            found.findings = [replace(each, advice=_USE_IT) for each in found.findings]
+        found.findings += [answers_elsewhere(plc, station) for station in found.elsewhere]
     return found
 
 
@@ -135,40 +134,6 @@ def _answers_late(enough: EnoughTime, seen: LoopbackResult, given_s: float) -> F
         evidence=f"{seen.heard.late} answers were after --timeout {given_s:g}; with {enough.timeout_s:g} s "
         f"{enough.ok} of {enough.sent} were answered, the slowest after {enough.slowest_s:.2f} s",
         advice=advice,
-    )
-
-
-def _look_elsewhere(plc: Plc, on_step: Callable[[str, int, int], object]) -> ScanResult:
-    """Try all baud rates of these PLCs, for a limited time; then set the line as it was."""
-    link = plc.link
-    carried = [form for form in FORMATS if int(form[0]) >= (link.codec.data_bits or 0)]
-    settings = [ScanSetting(link.codec, LineSettings(baud, form)) for form in carried for baud in BAUDS]
-    try:
-        result = scan(
-            link.transport,
-            settings,
-            sorted({FACTORY_STATION, link.station}),
-            timeout_s=link.timeout_s,
-            retries=0,
-            most=1,
-            longest_s=LONGEST_SEARCH_S,
-            on_probe=lambda done, total: on_step("other settings", done, total),
-        )
-    finally:
-        link.transport.configure(link.line)
-    if result.interrupted:
-        raise KeyboardInterrupt
-    return result
-
-
-def _answers_elsewhere(found: Station) -> Finding:
-    line = found.setting.line
-    return Finding(
-        "answers-elsewhere",
-        fault=True,
-        finding=f"station {found.station} answers at {line}",
-        evidence="one exchange of its brief status (40)",
-        advice=f"give --station {found.station} --baud {line.baud} --line {line.format}",
     )
 
 

@@ -158,6 +158,8 @@ class _Scanner:
 
     def probe(self, setting: ScanSetting, station: int) -> None:
         """Ask one station, again only after noise, and find out whether the port answers for every number."""
+        if station not in self._result.stations:
+            self._result.stations.append(station)
         if self._ask_until_clear(setting, station):
             self._compare(setting)
         else:

@@ -58,6 +58,7 @@ class ScanResult:
         unclear: where bytes were received, but no valid frame.
         refused: settings that this port does not support.
         tried: settings that it supports.
+        stations: those that were asked, in order.
         probes: how many requests were sent.
         duration_s: how long it took.
         interrupted: by Ctrl-C.
@@ -68,6 +69,7 @@ class ScanResult:
     unclear: list[Unclear] = field(default_factory=list)
     refused: list[ScanSetting] = field(default_factory=list)
     tried: list[ScanSetting] = field(default_factory=list)
+    stations: list[int] = field(default_factory=list)
     probes: int = 0
     duration_s: float = 0.0
     interrupted: bool = False

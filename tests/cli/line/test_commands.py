@@ -186,7 +186,13 @@ def test_a_plc_at_another_speed_is_found(place: Path, cli: Cli) -> None:
         assert [(each["station"], each["baud"]) for each in found] == [(1, 38400), (3, 38400)]
         done = cli("doctor", *words, "-s", 3)
         assert done.code == 1
-        assert done.document("doctor")["findings"][-1]["advice"].startswith("give --station 1 --baud 38400")
+        advice = done.document("doctor")["findings"][-1]["advice"]
+        assert advice.startswith("use: fatektool status -p ")
+        assert advice.endswith("/plc -s 1 --baud 38400 --line 7E1")
+        assert done.document("doctor")["searched"]["stations"] == [1]
+        words_of = cli("doctor", *words[:-1], "-s", 3).out.split("\n\n")[1]
+        assert words_of.startswith("FOUND: station 1 answers at 38400 7E1\n")
+        assert "A and B" not in words_of
 
 
 @needs_pty

@@ -110,14 +110,31 @@ def test_a_plc_at_another_speed_is_found() -> None:
     found = examine(plc, lambda step, _done, _total: steps.append(step))
     assert rules(found) == {"silence", "answers-elsewhere"}
     advice = found.findings[-1].advice
-    assert advice == "give --station 3 --baud 38400 --line 7E1"
-    assert set(steps) == {"loopback", "other settings"}
+    assert advice == "use: fatektool status -p line -s 3 --baud 38400 --line 7E1"
+    assert set(steps) == {"loopback", "stations 1-3"}
     assert line.set_to == 9600
 
 
 def test_a_plc_at_the_factory_station_is_found() -> None:
     found = examine(doctored(StatusOnly({1}), 3))
-    assert "give --station 1 --baud 9600" in found.findings[-1].advice
+    assert "-s 1 --baud 9600" in found.findings[-1].advice
+
+
+def test_another_station_at_another_speed_is_found() -> None:
+    found = examine(doctored(StatusOnly({5}, baud=19200), 3))
+    assert found.findings[-1].advice == "use: fatektool status -p line -s 5 --baud 19200 --line 7E1"
+    assert found.findings[-1].finding == "station 5 answers at 19200 7E1"
+
+
+def test_another_station_is_found_over_a_network() -> None:
+    line = StatusOnly({4})
+    plc = doctored(line, 3)
+    plc.link.transport.serial_settings = None
+    plc.link.transport.name = "tcp://192.168.2.3:500"
+    found = examine(plc)
+    assert found.findings[-1].advice == "use: fatektool status -p line -s 4"
+    assert found.findings[-1].finding == "station 4 answers"
+    assert not [each for each in found.findings if "A and B" in each.advice]
 
 
 def test_nobody_anywhere() -> None:
@@ -163,4 +180,6 @@ def test_the_search_ends_and_says_what_was_tried() -> None:
     assert found.searched is not None
     assert {setting.line.baud for setting in found.searched.tried} == set(BAUDS)
     assert {setting.line.format for setting in found.searched.tried} == {"7E1", "8E1", "8N1"}
-    assert found.searched.duration_s < 62
+    assert found.searched.duration_s < 122
+    assert not found.searched.out_of_time
+    assert found.searched.stations == list(range(1, 9))

@@ -124,6 +124,7 @@ def _searched(result: ScanResult) -> dict[str, Any]:
     return {
         "tried": [str(setting.line) for setting in result.tried],
         "refused": [str(setting.line) for setting in result.refused],
+        "stations": result.stations,
         "out_of_time": result.out_of_time,
         "duration_s": round(result.duration_s, 3),
     }
