@@ -52,6 +52,8 @@ JOBS: Final[dict[str, dict[str, Subcommand]]] = {
         "simulate": Subcommand("tools.simulate", "Simulate a PLC on TCP, UDP or a pty."),
         "schema": Subcommand("tools.schema", "Print the JSON Schema of a document."),
         "completion": Subcommand("tools.completion", "Print the shell's completion."),
+        "help": Subcommand("tools.about", "Show the help of a command."),
+        "version": Subcommand("tools.about", "Print the version."),
     },
 }
 

@@ -191,6 +191,21 @@ class SimulatedMemory:
         self.registers["R"][address] = value
         self.revision += 1
 
+    def preset(self, symbol: str, address: int, value: int) -> None:
+        """Set an element of any kind as nothing but the PLC itself can: inputs and disabled discretes too."""
+        kind = kind_of(symbol)
+        end = self.check(kind, address, 1)
+        if kind.area in self.status:
+            for bit, place in enumerate(range(address, end)):
+                self.status[kind.area][place] = value >> bit & 1
+                if kind.area == "X":
+                    self.inputs[place] = value >> bit & 1
+        else:
+            for place in range(address, end):
+                self.registers[kind.area][place] = value & 0xFFFF
+                value >>= 16
+        self.revision += 1
+
     def _store_discretes(self, area: str, address: int, values: bytes) -> None:
         if area == "X":
             return

@@ -14,6 +14,7 @@ from fatektool.cli.shared.options import PATH, completing, voice_options
 from fatektool.cli.shared.output import print_json
 from fatektool.cli.shared.pairs import apart, given, together
 from fatektool.cli.tools.documents import simulate_document
+from fatektool.cli.tools.start_values import StartValue, set_values, start_values
 from fatektool.errors import UsageError
 from fatektool.protocols import DEFAULT, PROTOCOLS
 from fatektool.simulator.build import build_simulation
@@ -85,11 +86,12 @@ _DEFAULT_MODELS = ", ".join(f"{slave.model} with {name}" for name, slave in SLAV
 @click.option("--state", type=PATH, metavar="FILE", help="Keep the PLCs' memory in FILE.")
 @click.option(
     "--set",
-    "flags",
+    "states",
     multiple=True,
-    type=click.Choice(FLAGS),
-    help="Set this state of the PLCs; repeat for more.",
+    type=StartValue(),
+    help=f"Start with this value, such as R0=4660, or state: {', '.join(FLAGS)}. Repeat for more.",
 )
+@click.option("--memory", type=PATH, metavar="FILE", help="Start with the values in FILE, a snapshot.")
 @click.option(
     "--baud",
     type=click.IntRange(50, 4_000_000),
@@ -158,7 +160,8 @@ def simulate_command(
     program_seed: int,
     swap_program: bool,
     state: Path | None,
-    flags: tuple[str, ...],
+    states: tuple[str, ...],
+    memory: Path | None,
     baud: int | None,
     strict_baud: bool,
     line_format: str | None,
@@ -204,6 +207,7 @@ def simulate_command(
         raise UsageError("--strict-baud needs --pty and --baud")
     if replay_speed is not None:
         raise UsageError("--replay-speed needs --replay TRACE")
+    values = start_values([each for each in states if each not in FLAGS], memory)
     simulation = build_simulation(
         station or None,
         model,
@@ -222,8 +226,10 @@ def simulate_command(
         latency_timer_ms=latency_timer,
     )
     for plc in simulation.plcs.values():
-        for flag in flags:
-            setattr(plc, flag, True)
+        for state_name in states:
+            if state_name in FLAGS:
+                setattr(plc, state_name, True)
+        set_values(plc, values)
     try:
         _serve(simulation, voice, addresses, pty, baud if strict_baud else None)
     finally:

@@ -61,8 +61,9 @@ def test_no_inventory(cli: Cli) -> None:
 def test_list(cli: Cli) -> None:
     Path("fatek.toml").write_text(PRESS + '[plc.oven]\ntarget = "sim:"\n')
     assert cli("inventory", "list").out.splitlines() == [
-        "press  tcp://h  7  facon  a, b",
-        "oven   sim:     1  facon",
+        "name   target   station  protocol  tags",
+        "press  tcp://h  7        facon     a, b",
+        "oven   sim:     1        facon",
     ]
     (plc,) = cli("inventory", "list", "--select", "b", "--json").document("inventory")["plcs"]
     assert (plc["name"], plc["station"], plc["tags"], plc["format"]) == ("press", 7, ["a", "b"], "7E1")

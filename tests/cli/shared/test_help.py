@@ -31,6 +31,17 @@ def test_the_help_groups_the_commands_by_job(cli: Cli) -> None:
         assert re.search(rf"^  {name} +{re.escape(entry.help[:40])}", done.out, re.MULTILINE), name
 
 
+def test_version_and_help_are_commands_too(cli: Cli) -> None:
+    assert cli("version") == cli("--version")
+    assert cli("help") == cli("--help")
+    assert cli("help", "backup") == cli("backup", "--help")
+    assert cli("help", "snapshot", "apply") == cli("snapshot", "apply", "--help")
+    done = cli("help", "backupp")
+    assert (done.code, done.out) == (2, "")
+    assert "did you mean backup?" in done.err
+    assert "'fatektool backup' has no commands: got 'x'" in cli("help", "backup", "x").err
+
+
 def test_no_command_is_a_question_for_help(cli: Cli) -> None:
     assert cli() == (2, cli("--help").out, "")
 

@@ -75,7 +75,8 @@ FREE = {
     "history record": "--push --history --lock-wait",
     "history show": "--history",
     "check": "--expect --backup --deadline --prometheus --on-failure",
-    "simulate": "--discovery --tcp --udp --pty --model --protocol --station --state --set --scan-ms --fault "
+    "simulate": "--discovery --tcp --udp --pty --model --protocol --station --state --set --memory --scan-ms "
+    "--fault "
     "--replay --latency-timer --no-program-commands",
 }
 """What has an effect whatever stands beside it."""

@@ -196,7 +196,7 @@ def test_every_other_option_is_refused(cli: Cli) -> None:
     Path("good.ndjson").write_text(ASKS, encoding="utf-8")
     examples = {
         "model": "fbe-28mc",
-        "flags": "running",
+        "states": "running",
         "line_format": "7E1",
         "fault": "drop=1",
         "station": "1",

@@ -91,6 +91,24 @@ def test_state_program_flags_and_stations(press: Press, cli: Cli) -> None:
     assert plcs[3].rom_pack
 
 
+START = ["R0=4660", "R1=-2", "Y0=on", "X3=1", "D4:f32=1.5", "DR10=-1", "WM16=0x8001", "R3840=7", "T5=1"]
+
+
+def test_start_values_are_in_the_memory_inputs_too(cli: Cli, place: Path) -> None:
+    names = [text.partition("=")[0] for text in START]
+    with simulator("--tcp", "127.0.0.1:0", *[f"--set={text}" for text in START], "--set=running") as running:
+        (target,) = listening(running)
+        values = cli("read", *names, "-p", target, "--json").document("read")["values"]
+        assert list(values.values()) == [4660, -2, True, True, 1.5, -1, 0x8001, 7, True]
+        assert cli("status", "--brief", "-p", target, "--json").document("status")["status"]["running"]
+        assert cli("snapshot", "--all", "-o", place / "start.json", "-p", target).code == 0
+    with simulator("--tcp", "127.0.0.1:0", "--memory", place / "start.json", "--set", "R0=5") as running:
+        (target,) = listening(running)
+        assert cli("snapshot", "--all", "-o", place / "again.json", "-p", target).code == 0
+    done = cli("snapshot", "diff", place / "start.json", place / "again.json")
+    assert done.out == "R0  4660 -> 5\n"
+
+
 def test_faults_strike(cli: Cli) -> None:
     with simulator("--tcp", "127.0.0.1:0", "--fault", "drop=1") as running:
         (door,) = listening(running)
@@ -144,7 +162,16 @@ def test_a_port_in_use(cli: Cli) -> None:
         (2, "--tcp :0 --fault drop=1 --fault drop=1", "given twice"),
         (2, "--tcp :0 --station 1 --station 1", "given twice"),
         (2, "--tcp :0 --station 0", "0 is not in the range 1<=x<=254"),
-        (2, "--tcp :0 --set nope", "'nope' is not one of"),
+        (
+            2,
+            "--tcp :0 --set nope",
+            "'nope': expected ELEMENT=VALUE, such as R0=4660, or one of running, battery_low",
+        ),
+        (2, "--tcp :0 --set R0=x", "R0"),
+        (2, "--tcp :0 --set R99999=1", "expected 0 to 65535, got 99999"),
+        (2, "--tcp :0 --set R9000=1", "R9000: the simulated fbe-28mc does not have it"),
+        (2, "--tcp :0 --memory no.json", "no.json"),
+        (5, "--tcp :0 --memory old.json", "not a snapshot"),
         (2, "--tcp :0 --scan-ms nan", "scan"),
         (2, "--tcp :0 --baud 9600 --format 9", "such as 7E1 or 8N1"),
         (2, "--tcp :0 --program old.json --ladder-words 5", "the program has 400"),

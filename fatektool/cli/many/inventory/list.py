@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from fatektool.inventory.entries import PlcEntry
 
 
+_HEAD = ("name", "target", "station", "protocol", "tags")
+
+
 def _complete_selection(context: click.Context, _: click.Parameter, incomplete: str) -> list[CompletionItem]:
     return complete_selection(context.params.get("inventory"), incomplete)
 
@@ -49,7 +52,7 @@ def _rows(entries: list[PlcEntry]) -> Iterator[str]:
         (entry.name, entry.address.target, str(entry.address.station), entry.address.protocol)
         for entry in entries
     ]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    for row, entry in zip(rows, entries, strict=True):
-        cells = [f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)]
-        yield "  ".join([*cells, ", ".join(entry.tags)]).rstrip()
+    lines = [_HEAD, *((*row, ", ".join(entry.tags)) for row, entry in zip(rows, entries, strict=True))]
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    for line in lines:
+        yield "  ".join(f"{cell:<{width}}" for cell, width in zip(line, widths, strict=True)).rstrip()
