@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NoReturn, TextIO
 
 import click
 
-from fatektool.cli.shared.output import print_json, print_stderr
+from fatektool.cli.shared.output import print_json, print_stderr, with_prefix
 from fatektool.cli.shared.stops import end_cleanly
 from fatektool.cli.shared.streams import is_closed_pipe, mend_streams, reader_is_gone
 from fatektool.errors import DataError, FatektoolError, FileWarning, UsageError
@@ -59,7 +59,7 @@ def _show_warning(  # noqa: PLR0917  # the signature of warnings.showwarning
 ) -> None:
     """What a user is to know in one line; a developer's warnings as Python shows them."""
     if issubclass(category, FileWarning):
-        print_stderr(f"warning: {message}")
+        print_stderr(with_prefix("warning:", str(message)))
     else:
         print_stderr(warnings.formatwarning(message, category, filename, lineno, line))
 
@@ -123,7 +123,7 @@ def failed(error: FatektoolError, *, as_json: bool) -> int:
         with contextlib.suppress(OSError):
             print_json(error_document(error))
     for number, line in enumerate(error.lines or [" ".join(str(error).split())]):
-        print_stderr(line if number else f"fatektool: {line}")
+        print_stderr(line if number else with_prefix("fatektool:", line, bad=True))
     return error.exit_code
 
 

@@ -13,6 +13,7 @@ from fatektool.cli.shared.broadcast import broadcast_option, means_all, send_to_
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.modbus_map import modbus_map_option
 from fatektool.cli.shared.options import completing, yes_option
+from fatektool.counts import counted
 from fatektool.errors import PlcError
 from fatektool.jobs.elements.assignment import parse_assignments, write_assignments
 from fatektool.jobs.elements.items import value_of
@@ -59,7 +60,7 @@ def write_command(
         here = look(plc)
         document = write_document(plc, here, items, failed)
     taken = len(pairs) - len(failed)
-    lines = [f"{taken} of {len(pairs)} elements written and read back", here.line]
+    lines = [f"{taken} of {counted(len(pairs), 'element')} written and read back", here.line]
     voice.show(document, lines)
     warn_of({items[each.element].key: _words(items[each.element], each) for each in failed}, voice)
     return PlcError.exit_code if failed else 0

@@ -8,6 +8,7 @@ import click
 
 from fatektool.cli.line.documents.linetest import doctor_document
 from fatektool.cli.line.loopback_view import findings
+from fatektool.cli.shared.colour import Style, coloured, joined, word
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.jobs.linetest.doctor import examine
 from fatektool.program.image import ranges
@@ -44,7 +45,7 @@ def _lines(document: dict[str, Any]) -> Iterator[str]:
     took = "" if times["p50"] is None else f", half of them within {times['p50']:.1f} ms"
     yield f"loopback test: {test['ok']} of {test['sent']} answered{took}"
     if document["status"] is not None:
-        yield f"the PLC is in {'RUN' if document['status']['running'] else 'STOP'}"
+        yield joined("the PLC is in ", word("RUN" if document["status"]["running"] else "STOP"))
     if document["searched"] is not None:
         yield from _searched(
             document["searched"], found=bool(document["elsewhere"]), serial=document["line"] is not None
@@ -52,7 +53,7 @@ def _lines(document: dict[str, Any]) -> Iterator[str]:
     yield ""
     yield from findings(document["findings"])
     if document["healthy"]:
-        yield "no faults found"
+        yield coloured("no faults found", Style.GOOD)
 
 
 def _searched(searched: dict[str, Any], *, found: bool, serial: bool) -> Iterator[str]:

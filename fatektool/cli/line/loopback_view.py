@@ -7,6 +7,7 @@ import time
 from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.cli.shared.bars import bar
+from fatektool.cli.shared.colour import joined, word
 from fatektool.cli.shared.output import shows_progress, table
 
 if TYPE_CHECKING:
@@ -30,11 +31,12 @@ class LiveFigures:
 
     def __enter__(self) -> Self:
         if self._shown:
-            from rich.console import Console
             from rich.live import Live
 
+            from fatektool.cli.shared.colour import stderr_console
+
             self._live = Live(
-                console=Console(stderr=True), auto_refresh=False, transient=True, redirect_stdout=False
+                console=stderr_console(), auto_refresh=False, transient=True, redirect_stdout=False
             )
             self._live.start()
         return self
@@ -76,7 +78,7 @@ def lines(document: dict[str, Any]) -> Iterator[str]:
     yield ""
     yield from findings(document["diagnosis"])
     verdict = "; ".join(document["limits_passed"])
-    yield f"{document['verdict']}: {verdict}" if verdict else f"{document['verdict']}"
+    yield joined(word(document["verdict"]), f": {verdict}" if verdict else "")
 
 
 def _figures(document: dict[str, Any]) -> Iterator[tuple[str, object]]:
@@ -135,6 +137,6 @@ def findings(found: Iterable[dict[str, Any]]) -> Iterator[str]:
     """A diagnosis as lines: where the PLC was found, the faults, notes."""
     for finding in sorted(found, key=lambda finding: (finding["rule"] != _FOUND, not finding["fault"])):
         mark = "FOUND" if finding["rule"] == _FOUND else "FAULT" if finding["fault"] else "note"
-        yield f"{mark}: {finding['finding']}"
+        yield joined(word(mark), f": {finding['finding']}")
         yield f"  seen: {finding['evidence']}"
         yield f"  do:   {finding['advice']}"

@@ -11,6 +11,7 @@ from fatektool.address import default_format
 from fatektool.cli import INTERRUPTED
 from fatektool.cli.line.documents.linetest import scan_document, station_document
 from fatektool.cli.line.network import look_for_modules, network_option
+from fatektool.cli.shared.colour import joined, word
 from fatektool.cli.shared.connection_options import connection_options, without_effect
 from fatektool.cli.shared.options import ChoiceType, Several, type_of
 from fatektool.cli.shared.pairs import apart, together
@@ -200,7 +201,8 @@ def _line(found: Station, *, serial: bool) -> str:
     mode = {True: "RUN", False: "STOP", None: "mode unknown"}[row["running"]]
     took = "late" if row["latency_ms"] is None else f"{row['latency_ms']:.1f} ms{', late' * row['late']}"
     model = row["model"] or "model unknown"
-    return f"station {row['station']:>3}  {line}{row['protocol']}  {mode}  {model}  {took}"
+    start = f"station {row['station']:>3}  {line}{row['protocol']}  "
+    return joined(start, word(mode), f"  {model}  {took}")
 
 
 def _summary(result: ScanResult) -> str:
@@ -208,10 +210,10 @@ def _summary(result: ScanResult) -> str:
 
 
 def _parts(result: ScanResult) -> Iterator[str]:
-    count = len(result.found)
+    count = len({found.station for found in result.found})
     stations = counted(count, "station") if count else "no stations"
-    requests = counted(result.probes, "request")
-    yield f"{stations} found with {requests} in {result.duration_s:.1f} s"
+    several = f" ({counted(len(result.found), 'setting')})" if len(result.found) > count else ""
+    yield f"{stations} found{several} with {counted(result.probes, 'request')} in {result.duration_s:.1f} s"
     if result.unclear:
         places = sorted({place.station for place in result.unclear})
         named = ", ".join(map(str, places[:5])) + (", …" if len(places) > 5 else "")

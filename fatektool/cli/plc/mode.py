@@ -10,6 +10,7 @@ import click
 from fatektool.cli.plc.documents import mode_document
 from fatektool.cli.shared.addressee import agree, with_status
 from fatektool.cli.shared.broadcast import broadcast_option, means_all, send_to_all
+from fatektool.cli.shared.colour import joined, word
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.options import yes_option
 from fatektool.errors import PlcError, PlcRefused
@@ -67,4 +68,4 @@ def _change(connection: Connection, voice: Voice, *, run: bool, broadcast: bool,
                 plc.stop()
         document = mode_document(plc, here, mode.lower())
     already = " already" if before == run else ""
-    voice.show(document, [f"the PLC is in {mode}{already}", replace(here, running=None).line])
+    voice.show(document, [joined("the PLC is in ", word(mode), already), replace(here, running=None).line])

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from fatektool.cli.shared.colour import bad, word
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.output import Voice, table
 from fatektool.counts import counted
@@ -35,11 +36,15 @@ def status_command(connection: Connection, voice: Voice, *, brief: bool) -> None
 def _rows(report: StatusReport) -> Iterator[tuple[str, object]]:
     flags = report.flags
     yield "PLC", f"station {report.station} on {report.target}"
-    yield "mode", "RUN" if flags.running else "STOP"
-    yield "battery", "LOW: take a backup and a snapshot now, then replace it" if flags.battery_low else "ok"
-    yield "ladder checksum", "ERROR: restore a good backup" if flags.ladder_checksum_error else "ok"
-    yield "watchdog", "TIMED OUT" if flags.watchdog_timeout else "ok"
-    yield "emergency stop", "ACTIVE" if flags.emergency_stop else "no"
+    yield "mode", word("RUN" if flags.running else "STOP")
+    low = bad("LOW", ": take a backup and a snapshot now, then replace it")
+    yield "battery", low if flags.battery_low else word("ok")
+    yield (
+        "ladder checksum",
+        bad("ERROR", ": restore a good backup") if flags.ladder_checksum_error else word("ok"),
+    )
+    yield "watchdog", bad("TIMED OUT") if flags.watchdog_timeout else word("ok")
+    yield "emergency stop", bad("ACTIVE") if flags.emergency_stop else "no"
     if report.brief.m_series:
         yield "memory card", "yes" if flags.rom_pack else "no"
     else:

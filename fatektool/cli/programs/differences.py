@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from fatektool.cli.programs.data_differences import comparison_document, comparison_lines
 from fatektool.cli.programs.documents import diff_document
+from fatektool.cli.shared.colour import diff_line, joined, word
 from fatektool.cli.shared.report import write_report
 from fatektool.counts import counted
 from fatektool.files.times import utc
@@ -77,12 +78,15 @@ def difference_lines(found: Comparison, same: str, a: str, b: str, *, words: boo
         words: also show the words that differ, page by page.
     """
     if found.same:
-        yield same
+        yield joined(word(same[:4]), same[4:])
         return
     if found.a_ladder_words != found.b_ladder_words:
-        yield f"differs: ladder size {found.a_ladder_words} words in {a}, {found.b_ladder_words} in {b}"
+        yield joined(
+            word("differs"),
+            f": ladder size {found.a_ladder_words} words in {a}, {found.b_ladder_words} in {b}",
+        )
     if found.pages:
-        yield f"differs: {_extent(found)} ({a} -> {b})"
+        yield joined(word("differs"), f": {_extent(found)} ({a} -> {b})")
     in_both = [page.page for page in found.pages if page.a is not None and page.b is not None]
     if in_both:
         yield page_ranges(in_both)
@@ -136,8 +140,8 @@ def program_lines(
             yield f"same code: {size}; {why}"
         return
     yield f"networks: {found.networks_summary}"
-    yield f"--- {sides[0]}"
-    yield f"+++ {sides[1]}"
+    yield diff_line(f"--- {sides[0]}")
+    yield diff_line(f"+++ {sides[1]}")
     yield from change_lines(found.networks, comments)
 
 
@@ -159,7 +163,7 @@ def _network_lines(change: NetworkChange, comments: Mapping[str, str]) -> Iterat
     """A network as a hunk: all of it, or of a long one what is near a difference."""
     here, there = (network.name if network is not None else "" for network in (change.a, change.b))
     moved = f"{here} -> {there}" if here and there and here != there else here or there
-    yield f"@@ {moved} {change.change} @@"
+    yield diff_line(f"@@ {moved} {change.change} @@")
     near = {
         near
         for number, line in enumerate(change.diff)
@@ -171,7 +175,7 @@ def _network_lines(change: NetworkChange, comments: Mapping[str, str]) -> Iterat
         is_shown = len(change.diff) <= _WHOLE or number in near
         if is_shown:
             remark = beside(line.elements, comments)
-            yield f"{line!s:<30}  {remark}" if remark else str(line)
+            yield diff_line(f"{line!s:<30}  {remark}" if remark else str(line))
         elif not left_out:
             yield " ..."
         left_out = not is_shown

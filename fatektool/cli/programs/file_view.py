@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fatektool.cli.programs.data_view import data_rows
+from fatektool.cli.shared.colour import bad, joined, word
 from fatektool.cli.shared.output import shown_time
 from fatektool.counts import counted
 
@@ -27,7 +28,7 @@ def backup_rows(found: Backup, file: str) -> Iterator[tuple[str, object]]:
         "source",
         f"station {source.station} on {source.target}, {source.protocol}, {source.line or 'no serial line'}",
     )
-    yield "PLC then", "RUN" if status.get("running") else "STOP"
+    yield "PLC then", word("RUN" if status.get("running") else "STOP")
     header = program.header
     yield "header", header.text()
     if header.checksum is not None:
@@ -71,4 +72,4 @@ def _sum_words(found: Sum) -> str:
     if found.valid:
         return f"{found.stored:04X}, correct"
     computed = "cannot be computed" if found.computed is None else f"that of the code is {found.computed:04X}"
-    return f"{found.stored:04X}, WRONG: {computed}"
+    return joined(f"{found.stored:04X}, ", bad("WRONG"), f": {computed}")

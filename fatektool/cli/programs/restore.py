@@ -9,6 +9,7 @@ import click
 from fatektool.cli.programs.documents import restore_document
 from fatektool.cli.programs.restore_data import data_document, data_plan_lines, data_rows
 from fatektool.cli.shared.addressee import Addressee, ExchangeTime, Origin
+from fatektool.cli.shared.colour import joined, word
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.image_words import warn_of_image
 from fatektool.cli.shared.options import PATH
@@ -179,13 +180,24 @@ class _Question(NamedTuple):
         if plan.running:
             yield "The PLC is in RUN and will be stopped."
         if plan.pages:
-            yield f"{len(plan.pages)} of {len(plan.wanted.pages)} pages will be written, then all read back."
+            yield from _pages_lines(len(plan.pages), len(differ), len(plan.wanted.pages))
         if plan.data is not None:
             yield from data_plan_lines(plan.data)
         elif self.backup.data is not None:
             yield "FILE has data too. They are not written without --data: the PLC keeps its own."
         if plan.options.run:
             yield "Then the PLC will RUN."
+
+
+def _pages_lines(written: int, differ: int, count: int) -> Iterator[str]:
+    """How many pages will be written, and why more than differ."""
+    if written < count:
+        yield f"{written} of {count} pages will be written, then all read back."
+        return
+    yield f"All {count} pages will be written, then all read back."
+    if differ < count:
+        those = "page that differs" if differ == 1 else f"{differ} pages that differ"
+        yield f"--changed-only writes only the {those}."
 
 
 def _carry_out(plc: Plc, plan: RestorePlan, file: Path, offer: Offer, bar: ProgressBar) -> RestoreResult:
@@ -246,4 +258,4 @@ def _lines(plan: RestorePlan, result: RestoreResult, offer: Offer, pace: Exchang
             ]
         )
     if not offer.writing.terms.dry_run:
-        yield f"the PLC is in {result.mode_after.upper()}"
+        yield joined("the PLC is in ", word(result.mode_after.upper()))

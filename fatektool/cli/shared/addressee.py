@@ -19,6 +19,7 @@ import sys
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from fatektool.cli.shared.colour import word
 from fatektool.cli.shared.output import passed, shown_time, table
 from fatektool.cli.shared.unfinished import line_name
 from fatektool.counts import spent
@@ -71,7 +72,7 @@ class Addressee:
         if self.model is not None:
             yield "model", self.model
         if self.mode is not None:
-            yield "mode", self.mode
+            yield "mode", word(self.mode)
 
     def document(self) -> dict[str, Any]:
         """The same for JSON, beside target and station."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import sys
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TextIO
 
 import click
 
@@ -37,6 +37,27 @@ def visible(text: str) -> str:
     return text.translate(_OBEYED)
 
 
+def written(text: str, stream: TextIO) -> str:
+    """A text as it is written to a stream, in colour where it has some."""
+    if type(text) is str:
+        return visible(text)
+    from fatektool.cli.shared.colour import rendered
+
+    return rendered(text, stream, visible)
+
+
+def print_line(text: str) -> None:
+    """Print a line of data on stdout."""
+    click.echo(written(text, sys.stdout), color=True)
+
+
+def with_prefix(prefix: str, text: str, *, bad: bool = False) -> str:
+    """A message for stderr that begins with a word in colour: an error (``bad``) or a warning."""
+    from fatektool.cli.shared.colour import Style, coloured, joined
+
+    return joined(coloured(prefix, Style.BAD if bad else Style.NOTICE), f" {text}")
+
+
 def passed(plc: Plc, seconds: float) -> str:
     """How long a job took, in words; nobody waited for a line that is simulated in this process."""
     from fatektool.counts import spent
@@ -61,7 +82,7 @@ def shown_time(created: str, stream: TextIO | None = None) -> str:
 def print_stderr(text: str) -> None:
     """Print a line on stderr. An error is ignored: a write into a PLC must go on without a reader."""
     with contextlib.suppress(OSError):
-        click.echo(visible(text), err=True)
+        click.echo(written(text, sys.stderr), err=True, color=True)
 
 
 def print_json(document: dict[str, Any]) -> None:
@@ -99,7 +120,7 @@ class Voice:
 
     def warn(self, text: str) -> None:
         """Warn the user, on stderr, quiet or not."""
-        print_stderr(f"warning: {self.name}{text}")
+        print_stderr(with_prefix("warning:", f"{self.name}{text}"))
 
     def of(self, name: str) -> Voice:
         """The same voice where many PLCs are talked of: this one's name comes first."""
@@ -111,7 +132,7 @@ class Voice:
             print_json(document)
         else:
             for line in lines:
-                click.echo(visible(line))
+                print_line(line)
 
     def confirm(self, question: str, *, yes: bool, option: str = "--yes") -> bool:
         """Ask, unless the option answers; a question that cannot be put is a refusal.
@@ -173,7 +194,13 @@ def table(rows: Iterable[tuple[str, object]]) -> Iterator[str]:
     rows = list(rows)
     width = max((len(name) for name, _ in rows), default=0)
     for name, value in rows:
-        yield f"{name:<{width}}  {value}".rstrip()
+        start = f"{name:<{width}}  "
+        if isinstance(value, str) and type(value) is not str:
+            from fatektool.cli.shared.colour import joined
+
+            yield joined(start, value)
+        else:
+            yield f"{start}{value}".rstrip()
 
 
 class ProgressBar:
@@ -199,8 +226,9 @@ class ProgressBar:
     def _begin(self) -> None:
         """Draw a bar of its own below what is on the screen."""
         if self._shown:
-            from rich.console import Console
             from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+            from fatektool.cli.shared.colour import stderr_console
 
             self._rich = Progress(
                 TextColumn("{task.description}"),
@@ -208,7 +236,7 @@ class ProgressBar:
                 MofNCompleteColumn(),
                 TextColumn(f"{self._unit} {{task.fields[rate]}}"),
                 TimeRemainingColumn(elapsed_when_finished=True),
-                console=Console(stderr=True),
+                console=stderr_console(),
                 expand=True,
                 refresh_per_second=5,
                 redirect_stdout=False,  # data may go to a file while the bar is on the terminal
@@ -226,9 +254,11 @@ class ProgressBar:
     def print(self, text: str) -> None:
         """Print a line of data on stdout, above the bar if both are on one terminal."""
         if self._shown and sys.stdout.isatty():
-            self._rich.console.print(visible(text), markup=False, highlight=False, soft_wrap=True)
+            from rich.text import Text
+
+            self._rich.console.print(Text.from_ansi(written(text, sys.stderr)), soft_wrap=True)
         else:
-            click.echo(visible(text))
+            print_line(text)
             sys.stdout.flush()
 
     def pause(self) -> None:

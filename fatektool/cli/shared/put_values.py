@@ -91,7 +91,7 @@ def result_lines(
         yield from offer.dry_run(*details)
     else:
         taken = count - len(done.not_taken)
-        yield f"{taken} of {count} values written and read back, {plan.same} were equal already"
+        yield f"{taken} of {counted(count, 'value')} written and read back, {plan.same} were equal already"
         yield offer.here.line
         yield f"took {pace.passed}"
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final, TypeVar
 import click
 
 from fatektool.cli.shared.documents import error_document
-from fatektool.cli.shared.output import print_stderr
+from fatektool.cli.shared.output import print_stderr, with_prefix
 from fatektool.errors import FatektoolError, LineError, TransportClosed
 
 if TYPE_CHECKING:
@@ -90,5 +90,5 @@ def failed_in_line(error: FatektoolError | KeyboardInterrupt) -> int:
 
     told = error if isinstance(error, FatektoolError) else Interrupted("interrupted")
     click.echo(json.dumps(error_document(told)))
-    print_stderr(f"fatektool: {' '.join(str(told).split())}")
+    print_stderr(with_prefix("fatektool:", " ".join(str(told).split()), bad=True))
     return told.exit_code

@@ -224,7 +224,7 @@ def test_on_a_terminal(plant: Plant, place: Path) -> None:
         assert plant.register(0) == 1
         terminal.type("y\n")
         assert terminal.end() == 0
-    assert "1 of 1 values written and read back" in terminal.text
+    assert "1 of 1 value written and read back" in terminal.text
     assert plant.register(0) == 0
 
 

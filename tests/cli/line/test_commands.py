@@ -76,6 +76,15 @@ def test_a_scan_over_tcp_knows_no_speed(cli: Cli) -> None:
     ]
 
 
+@needs_pty
+def test_a_station_that_answers_with_two_formats_is_one(place: Path, cli: Cli) -> None:
+    with port(place / "plc", stations=[2]):
+        done = cli("scan", "-p", place / "plc", "--stations", "2", "--formats", "7E1,8N1", "--timeout", "2")
+    assert done.code == 0
+    assert len(done.out.splitlines()) == 2
+    assert "1 station found (2 settings) with " in done.err
+
+
 def test_nobody_there_is_a_no(cli: Cli) -> None:
     with served() as door:
         done = cli("scan", "-p", door.target, "--stations", "9", "--timeout", "0.01")

@@ -119,7 +119,8 @@ def test_a_restore_keeps_the_old_program_beside_the_file(press: Press, cli: Cli)
     assert done.err.splitlines()[5].startswith("time   ")
     assert done.err.splitlines()[6:] == [
         "The PLC's program differs in pages 1-7 (448 words).",
-        "8 of 8 pages will be written, then all read back.",
+        "All 8 pages will be written, then all read back.",
+        "--changed-only writes only the 7 pages that differ.",
         f"Previous program saved in {safety}",
     ]
     assert "8 written, 1 were equal already" in done.out

@@ -28,7 +28,8 @@ def test_restore_asks_and_yes_is_yes(press: Press) -> None:
         for line in (
             "The PLC's program differs in pages 1-7 (448 words).",
             f"Previous program saved in {safety.name}",
-            "8 of 8 pages will be written, then all read back.",
+            "All 8 pages will be written, then all read back.",
+            "--changed-only writes only the 7 pages that differ.",
             "PLC    station 1 on sim:plc.state",
             "model  MC, 28 points, OS 3.1",
             "mode   STOP",

@@ -9,6 +9,7 @@ import click
 
 from fatektool.cli.elements.documents import snapshot_diff_document
 from fatektool.cli.elements.values import shown
+from fatektool.cli.shared.colour import Style, coloured, joined, word
 from fatektool.cli.shared.options import PATH, voice_options
 from fatektool.errors import UsageError
 from fatektool.jobs.snapshots.compare import ValueChange, compare_snapshots
@@ -48,11 +49,12 @@ def diff_command(a: Path, b: Path, voice: Voice, *, ignore: tuple[str, ...], tol
 
 def _change_lines(changes: list[ValueChange]) -> Iterator[str]:
     if not changes:
-        yield "same"
+        yield word("same")
     width = max((len(change.key) for change in changes), default=0)
     for change in changes:
         one, other = (
             "(not there)" if change.absent == side else shown(value, "- (no value)")
             for side, value in (("a", change.a), ("b", change.b))
         )
-        yield f"{change.key:<{width}}  {one} -> {other}"
+        start = f"{change.key:<{width}}  "
+        yield joined(start, coloured(one, Style.REMOVED), " -> ", coloured(other, Style.GOOD))

@@ -12,7 +12,7 @@ import click
 from fatektool.cli import Interrupted
 from fatektool.cli.many.documents import FleetRun, fleet_document
 from fatektool.cli.many.fleet.view import View
-from fatektool.cli.many.fleet.words import summary_words
+from fatektool.cli.many.fleet.words import not_done_words, summary_words
 from fatektool.cli.many.outcome import JobResult, Outcome, failure
 from fatektool.cli.shared.connection import Connection
 from fatektool.cli.shared.inventory_file import complete_selection, inventory_option, open_inventory
@@ -201,7 +201,7 @@ def ended(job: str, document: dict[str, Any], voice: Voice, alarms: Alarms, *, i
     from fatektool.cli import failed
 
     if interrupted:
-        return failed(Interrupted("interrupted"), as_json=False)
+        return failed(Interrupted(f"interrupted; not done: {not_done_words(document)}"), as_json=False)
     if alarms.lost is not None:
         return failed(alarms.lost, as_json=False)
     return 1 if document["summary"]["failed"] else 0

@@ -9,10 +9,8 @@ import sys
 import time
 from typing import TYPE_CHECKING, Any, Final
 
-import click
-
 from fatektool.cli.many.fleet.words import line_of
-from fatektool.cli.shared.output import shows_progress
+from fatektool.cli.shared.output import print_line, shows_progress, written
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -51,11 +49,12 @@ class View:
 
     def __enter__(self) -> Self:
         if self.live:
-            from rich.console import Console
             from rich.live import Live
 
+            from fatektool.cli.shared.colour import stderr_console
+
             self._rich = Live(
-                console=Console(stderr=True), auto_refresh=False, transient=True, redirect_stdout=False
+                console=stderr_console(), auto_refresh=False, transient=True, redirect_stdout=False
             )
             self._rich.start()
         return self
@@ -75,9 +74,11 @@ class View:
             return
         text = line_of(self._job, f"{outcome.name:<{self._width}}", result)
         if self.live and sys.stdout.isatty():
-            self._rich.console.print(text, markup=False, highlight=False, soft_wrap=True)
+            from rich.text import Text
+
+            self._rich.console.print(Text.from_ansi(written(text, sys.stderr)), soft_wrap=True)
         else:
-            click.echo(text)
+            print_line(text)
             sys.stdout.flush()
 
     def refresh(self, fleet: Fleet[Any]) -> None:

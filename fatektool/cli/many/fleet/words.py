@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.cli import INTERRUPTED
+from fatektool.cli.shared.colour import bad, joined, word
 from fatektool.errors import (
     DataError,
     FatektoolError,
@@ -49,7 +50,22 @@ def line_of(job: str, name: str, result: JobResult) -> str:
     """State and words of one PLC: ``FAILED    no valid answer: /dev/ttyUSB0: no such port``."""
     reason = _CLASSES.get(result.exit_code)
     words = " ".join(result.words.split())
-    return f"{name}  {state_of(job, result.exit_code):<8}  {f'{reason}: ' if reason else ''}{words}"
+    state = state_of(job, result.exit_code)
+    space = " " * max(0, 8 - len(state))
+    text = _flags(words) if job == "status" and not result.exit_code else words
+    return joined(f"{name}  ", word(state), f"{space}  {f'{reason}: ' if reason else ''}", text)
+
+
+def _flags(words: str) -> str:
+    """``RUN, battery LOW``: the mode, then faults."""
+    mode, *faults = words.split(", ")
+    return joined(word(mode), *(part for fault in faults for part in (", ", bad(fault))))
+
+
+def not_done_words(document: dict[str, Any]) -> str:
+    """The PLCs whose job an interrupt ended or left out, by name."""
+    names = [each["name"] for each in document["plcs"] if each["exit_code"] == INTERRUPTED]
+    return ", ".join(names) if names else "none"
 
 
 def summary_words(job: str, document: dict[str, Any]) -> Iterator[str]:
@@ -57,14 +73,14 @@ def summary_words(job: str, document: dict[str, Any]) -> Iterator[str]:
     summary = document["summary"]
     differ = sum(each["exit_code"] == 1 for each in document["plcs"])
     yield f"{job}: {summary['ok']} of {summary['total']} {done_word(job)}"
-    for count, word in (
+    for count, noun in (
         (differ, "differs" if differ == 1 else "differ"),
         (summary["failed"] - differ, "failed"),
         (summary["changed"], "changed"),
         (summary["not_done"], "not done"),
     ):
         if count:
-            yield f"{count} {word}"
+            yield f"{count} {noun}"
     yield f"{document['duration_s']:.1f} s"
     for each in document["slowest"][:1]:
         yield f"slowest {each['name']} {each['duration_s']:.1f} s"

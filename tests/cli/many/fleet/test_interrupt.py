@@ -56,7 +56,7 @@ def test_an_interrupt_tells_what_is_done(number: signal.Signals, *, as_json: boo
         command.send_signal(number)
         out, err = command.communicate()
     assert command.returncode == 130
-    assert err.splitlines()[-1] == "fatektool: interrupted"
+    assert err.splitlines()[-1] == "fatektool: interrupted; not done: slow, behind"
     assert "Traceback" not in err
     assert err.splitlines()[-2].startswith("backup: 1 of 3 done, 2 not done")
     if as_json:
@@ -103,5 +103,5 @@ def test_nothing_of_it_where_nobody_wants_it() -> None:
         Path("fatek.toml").write_text(tables)
         with Terminal("fleet", "status", "--news", "-q", columns=300) as terminal:
             assert terminal.end() == 1
-            (line,) = terminal.raw.splitlines()
+            (line,) = terminal.text.splitlines()
             assert line.startswith("nobody  FAILED    no valid answer: tcp://127.0.0.1:1: cannot connect")

@@ -95,7 +95,7 @@ def save_command(sr: str, file: Path, connection: Connection, voice: Voice, *, k
         document = table_document(found, faults, str(start), str(file), where(plc), host=host)
     write_whole(file, dump_table(found).encode(), overwrite=force)
     count = len(found.to_words())
-    voice.show(document, [f"saved {file}: {kind}, {count} registers from {start}"])
+    voice.show(document, [f"saved {file}: {kind}, {counted(count, 'register')} from {start}"])
     for warning in host.warnings():
         voice.warn(warning)
     if faults:
