@@ -28,9 +28,12 @@ def status_command(connection: Connection, voice: Voice, *, brief: bool) -> None
     needs = (Command.BRIEF_STATUS,) if brief else (Command.BRIEF_STATUS, Command.DETAILED_STATUS)
     with connection.open(voice, needs=needs) as plc:
         report = read_status(plc, brief=brief)
-    from fatektool.cli.plc.documents import status_document  # not before there is one
+    document = {}
+    if voice.json:
+        from fatektool.cli.plc.documents import status_document  # its modules are for JSON alone
 
-    voice.show(status_document(report), table(_rows(report)))
+        document = status_document(report)
+    voice.show(document, table(_rows(report)))
 
 
 def _rows(report: StatusReport) -> Iterator[tuple[str, object]]:

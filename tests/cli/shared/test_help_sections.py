@@ -74,7 +74,7 @@ def test_options_are_in_sections_and_own_ones_first(words: str) -> None:
 @each("words", [words for words in commands() if words])
 def test_what_goes_into_an_option_is_said(words: str) -> None:
     found = re.findall(r"^  .*\b(TEXT|INTEGER|FLOAT|RANGE|PATH|CHOICE|VALUE)\b", help_of(words), re.MULTILINE)
-    assert not found or words in {"write", "encode"}  # which speak of ELEMENT=VALUE and of a TEXT
+    assert not found or words in {"write", "encode", "simulate"}  # which have ELEMENT=VALUE or a TEXT
 
 
 def test_backup_fits_the_screen_but_for_the_connection() -> None:
