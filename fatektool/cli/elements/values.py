@@ -6,10 +6,12 @@ from itertools import groupby
 from typing import TYPE_CHECKING, Final
 
 from fatektool.cli.shared.output import Voice, table, visible
+from fatektool.protocol.values import decode, default_type
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from fatektool.protocol.elements import ElementKind
     from fatektool.protocol.values import Value
 
 SELECTION: Final = (
@@ -31,6 +33,11 @@ def shown(value: Value | None, absent: str = "-") -> str:
     if isinstance(value, str):
         return visible(value).replace("\n", "\\n")
     return f"{value:.7g}" if isinstance(value, float) else f"{value}"
+
+
+def shown_raw(raw: int | None, kind: ElementKind, absent: str = "-") -> str:
+    """A raw value for people, as ``read`` shows it."""
+    return shown(None if raw is None else decode(raw, default_type(kind), kind.bits), absent)
 
 
 def value_lines(values: Mapping[str, Value | None], comments: Mapping[str, str]) -> Iterator[str]:

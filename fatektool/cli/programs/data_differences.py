@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
+from fatektool.cli.elements.values import shown_raw
 from fatektool.counts import counted
 from fatektool.jobs.elements.reads import named
 from fatektool.jobs.elements.spans import spans_of
@@ -36,8 +37,9 @@ def comparison_lines(found: DataComparison, sides: tuple[str, str]) -> Iterator[
     if found.same:
         yield "data same: kept values, settings and disabled discretes"
     else:
-        counts = counted(len(found.constant), "value"), counted(len(found.disabled), "disabled discrete")
-        yield f"data differ: {' and '.join(counts)} ({sides[0]} -> {sides[1]})"
+        counts = {"value": len(found.constant), "disabled discrete": len(found.disabled)}
+        texts = [counted(count, noun) for noun, count in counts.items() if count]
+        yield f"data differ: {' and '.join(texts)} ({sides[0]} -> {sides[1]})"
     for each in found.constant[:_MOST_SHOWN]:
         yield f"  {each.element}  {_text(each, each.a)} -> {_text(each, each.b)}"
     if len(found.constant) > _MOST_SHOWN:
@@ -68,7 +70,7 @@ def _raw(each: ValueDifference, value: int | None) -> str | None:
 
 
 def _text(each: ValueDifference, value: int | None) -> str:
-    return _raw(each, value) or "no value"
+    return shown_raw(value, each.element.kind, "no value")
 
 
 def _state(on: bool | None) -> str:  # a state, not a switch

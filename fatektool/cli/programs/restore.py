@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import click
 
@@ -43,6 +43,9 @@ if TYPE_CHECKING:
     from fatektool.cli.shared.connection import Connection
     from fatektool.cli.shared.output import ProgressBar
     from fatektool.client import Plc
+
+
+_DATA_LEFT: Final = "FILE has data too. They are not written without --data: the PLC keeps its own."
 
 
 @click.command("restore", epilog="Example: fatektool restore press.json -p sim: --stop --run --yes")
@@ -120,6 +123,8 @@ def restore_command(
     if result.not_taken and run:
         voice.warn("the PLC stays in STOP, as not all data were taken")
     voice.show(document, _lines(plan, result, offer, pace))
+    if backup.data is not None and not data:
+        voice.say(_DATA_LEFT)
     return PlcError.exit_code if result.not_taken else 0
 
 
@@ -184,7 +189,7 @@ class _Question(NamedTuple):
         if plan.data is not None:
             yield from data_plan_lines(plan.data)
         elif self.backup.data is not None:
-            yield "FILE has data too. They are not written without --data: the PLC keeps its own."
+            yield _DATA_LEFT
         if plan.options.run:
             yield "Then the PLC will RUN."
 
