@@ -29,7 +29,7 @@ JOBS: Final[dict[str, dict[str, Subcommand]]] = {
         "read": Subcommand("elements.read", "Read elements of any kind."),
         "write": Subcommand("elements.write", "Write elements of any kind, and read them back."),
         "snapshot": Subcommand("elements.snapshot.group", "Save data as JSON or CSV, compare, write back."),
-        "watch": Subcommand("elements.watch", "Show values live, or as NDJSON."),
+        "watch": Subcommand("elements.watch.command", "Show values live, or as NDJSON."),
         "discrete": Subcommand("elements.discrete", "Enable, disable, set, reset and list discretes."),
     },
     "The line": {

@@ -19,6 +19,7 @@ LINES: Final = 40
 
 _SAME_LENGTH: Final = (
     (re.compile(r"\d{4}-\d\d-\d\d([T ])\d\d:\d\d:\d\d(Z?)"), r"2026-11-22\g<1>03:15:00\g<2>"),
+    (re.compile(r"(?<![T \d])\d\d:\d\d:\d\d(?=  )"), "03:15:00"),
     (re.compile(r"\d{8}T\d{6}Z"), "20261122T031500Z"),
     (re.compile(r"took(\s+)(?:under )?\d+ s"), r"took\g<1>8 s"),
     (re.compile(r"time(\s+)(?:about|under) \d+ s"), r"time\g<1>about 8 s"),

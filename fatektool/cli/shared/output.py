@@ -79,8 +79,48 @@ def shown_time(created: str, stream: TextIO | None = None) -> str:
     return local(created)
 
 
+class Held:
+    """Lines for stderr while a screen is drawn, which they would break: shown on it, and printed behind it.
+
+    Where stderr goes elsewhere, they go there at once.
+    """
+
+    def __init__(self) -> None:
+        self._lines: dict[str, None] = {}
+        self._new = ""
+
+    def __enter__(self) -> Self:
+        _HELD.append(self)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        _HELD.remove(self)
+        for line in self._lines:
+            print_stderr(line)
+
+    def take(self, text: str) -> None:
+        """Keep a line, each once, the first few."""
+        self._new = text
+        if len(self._lines) < _MOST_HELD:
+            self._lines[text] = None
+
+    def news(self) -> str:
+        """The newest line since the last call; empty if there is none."""
+        found, self._new = self._new, ""
+        return found
+
+
+_HELD: Final[list[Held]] = []
+_MOST_HELD: Final = 100
+
+
 def print_stderr(text: str) -> None:
     """Print a line on stderr. An error is ignored: a write into a PLC must go on without a reader."""
+    if _HELD and sys.stderr.isatty():
+        _HELD[-1].take(text)
+        return
     with contextlib.suppress(OSError):
         click.echo(written(text, sys.stderr), err=True, color=True)
 

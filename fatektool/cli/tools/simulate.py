@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import signal
 import sys
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -283,7 +284,8 @@ def _serve(
             for listener in opened:
                 click.echo(f"listening {listener.address}")
         sys.stdout.flush()
-        server.serve_until()
+        with suppress(KeyboardInterrupt):  # the one way to end it by hand
+            server.serve_until()
     finally:
         server.close()
 

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fatektool.cli.elements.watch import trend
+from fatektool.cli.elements.watch.table import trend
 from tests.cli.running import check, served, started
 from tests.cli.terminal import Terminal
 from tests.plant import cut_after, error_of, spied
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from fatektool.simulator.memory import SimulatedMemory
     from tests.plant import Plant
 
+BARS = "▁▂▃▄▅▆▇█"
 pytestmark = pytest.mark.usefixtures("no_waiting")
 
 
@@ -194,12 +195,12 @@ def test_units_and_changes(plant: Plant, place: Path) -> None:
 
 
 def test_the_trend() -> None:
-    assert trend(deque()) == ""
-    assert trend(deque([5.0, 5.0])) == "▁▁"
-    assert trend(deque(map(float, range(8)))) == "▁▂▃▄▅▆▇█"
-    assert trend(deque([-1.7e308, 0.0, 1.7e308])) == "▁▅█"
+    assert trend(deque(), BARS) == ""
+    assert trend(deque([5.0, 5.0]), BARS) == "▁▁"
+    assert trend(deque(map(float, range(8))), BARS) == "▁▂▃▄▅▆▇█"
+    assert trend(deque([-1.7e308, 0.0, 1.7e308]), BARS) == "▁▅█"
 
 
 @given(st.lists(st.floats(allow_nan=False, allow_infinity=False), max_size=24))
 def test_the_trend_of_anything(values: list[float]) -> None:
-    assert len(trend(deque(values))) == len(values)
+    assert len(trend(deque(values), BARS)) == len(values)

@@ -38,10 +38,9 @@ def listening(running: Process, doors: int = 1) -> list[str]:
     return [line.split()[1] for line in lines]
 
 
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGTERM, 0), (signal.SIGINT, 130)])
-def test_it_serves_every_door_until_it_is_told_to_end(
-    place: Path, cli: Cli, number: signal.Signals, code: int
-) -> None:
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_it_serves_every_door_until_it_is_told_to_end(place: Path, cli: Cli, number: signal.Signals) -> None:
+    """Both are how it is meant to end: it has no other end."""
     link = place / "plc"
     with simulator("--tcp", "127.0.0.1:0", "--udp", "127.0.0.1:0", "--pty", link) as running:
         doors = listening(running, 3)
@@ -50,9 +49,7 @@ def test_it_serves_every_door_until_it_is_told_to_end(
             assert cli("status", "-p", door).code == 0
         running.send_signal(number)
         out, err = running.communicate()
-    assert running.returncode == code
-    assert out == ""
-    assert err == ("" if code == 0 else "fatektool: interrupted\n")
+    assert (running.returncode, out, err) == (0, "", "")
     assert not link.is_symlink()
 
 

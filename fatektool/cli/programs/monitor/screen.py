@@ -6,10 +6,12 @@ import sys
 from typing import TYPE_CHECKING
 
 from fatektool.cli.programs.monitor.frame import Frames, News
-from fatektool.cli.programs.monitor.keys import terminal_keys
-from fatektool.cli.programs.monitor.reading import Reading
 from fatektool.cli.programs.monitor.view import View
 from fatektool.cli.programs.monitor.why import say_of_program
+from fatektool.cli.programs.monitor.words import program_words
+from fatektool.cli.shared.keys import terminal_keys
+from fatektool.cli.shared.output import Held
+from fatektool.cli.shared.reading import Reading, lost_words
 from fatektool.jobs.monitor.live import Monitor
 from fatektool.ladder.drawing.text.letters import Letters
 from fatektool.ladder.drawing.text.live import LivePen
@@ -19,11 +21,13 @@ if TYPE_CHECKING:
 
     from rich.text import Text
 
-    from fatektool.cli.programs.monitor.keys import Keys
+    from fatektool.cli.shared.keys import Keys
     from fatektool.cli.shared.output import Voice
     from fatektool.cli.shared.rounds import RoundTimes
     from fatektool.client import Plc
     from fatektool.jobs.monitor.live import LiveNetwork
+    from fatektool.jobs.monitor.rounds import Round
+    from fatektool.jobs.monitor.same_program import SameProgram
     from fatektool.ladder.drawing.text.live import Row
     from fatektool.project.comments import Comments
     from fatektool.project.program_file import ProgramFile
@@ -56,7 +60,7 @@ class Screen:
         place = f"station {plc.link.station} on {plc.target}"
         self._frames = Frames(file.name, place, comments, LivePen(Letters(sys.stdout.encoding)))
         self._monitor = Monitor(plc, file, networks[:1])
-        self._reading: Reading | None = None
+        self._reading: Reading[Round] | None = None
 
     def run(self) -> None:
         """Show it all until ``q``, Ctrl-C or the last round.
@@ -69,7 +73,7 @@ class Screen:
             return
         from rich.live import Live
 
-        with Live(console=self._console, screen=True, auto_refresh=False) as live:
+        with Held() as held, Live(console=self._console, screen=True, auto_refresh=False) as live:
 
             def down() -> Callable[[], object]:
                 live.stop()
@@ -86,6 +90,7 @@ class Screen:
                 while not (self._view.is_over or reading.is_over):
                     for key in keys.read():
                         self._view.press(key)
+                    self._view.message = held.news() or self._view.message
                     show()
                 if reading.error is not None:
                     raise reading.error
@@ -113,12 +118,21 @@ class Screen:
             if reading.error is not None:
                 raise reading.error
 
-    def _rounds(self, keys: Keys) -> Reading:
-        self._reading = Reading(self._plc, self._monitor, self._pace, keys.wake)
+    def _rounds(self, keys: Keys) -> Reading[Round]:
+        self._reading = Reading(self._plc, self._monitor.read, self._pace, keys.wake)
         return self._reading
 
     def _news(self) -> News:
-        return News(None) if self._reading is None else self._reading.news
+        return News(None) if self._reading is None else news_of(self._reading, self._monitor.program)
+
+
+def news_of(reading: Reading[Round], program: SameProgram) -> News:
+    """What the screen shows; of a line that is lost no states."""
+    words = "" if program.is_certain or reading.last is None else program_words(program)
+    lost = lost_words(reading)
+    if lost:
+        return News(None, lost=lost, program=words)
+    return News(reading.last, reading.rate, program=words)
 
 
 def _text(rows: Sequence[Row]) -> Text:

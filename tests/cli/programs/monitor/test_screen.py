@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.cli.programs.monitor.live_terminal import LiveTerminal
+from tests.cli.live_terminal import LiveTerminal
 from tests.cli.programs.monitor.plant import press, switch
 
 if TYPE_CHECKING:

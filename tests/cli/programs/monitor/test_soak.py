@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 from fatektool.cli.programs.monitor.frame import Frames
-from fatektool.cli.programs.monitor.reading import Reading
+from fatektool.cli.programs.monitor.screen import news_of
 from fatektool.cli.programs.monitor.view import View
+from fatektool.cli.shared.reading import Reading
 from fatektool.cli.shared.rounds import RoundTimes
 from fatektool.ladder.drawing.text.letters import Letters
 from fatektool.ladder.drawing.text.live import LivePen
@@ -50,7 +51,7 @@ class Machine:
         self.frames = Frames("press.json", "station 1 on sim:", COMMENTS, LivePen(Letters("utf-8")))
         self.reading = Reading(
             self.bench.plc,
-            self.bench.monitor,
+            self.bench.monitor.read,
             RoundTimes(INTERVAL_S),
             self.draw,
             clock=self.bench.transport.clock,
@@ -80,7 +81,10 @@ class Machine:
         is_away = AWAY_FROM_S < self.now % AWAY_EACH_S < AWAY_TO_S
         self.away.clear()
         self.away.update({} if is_away else self.here)
-        return self.now > self.seconds
+        if self.now > self.seconds:
+            self.reading.stop()
+            return True
+        return False
 
     def change(self) -> None:
         self.bench.wire.bodies()
@@ -95,7 +99,7 @@ class Machine:
         """What is drawn after a round, or a round that failed."""
         if self.reading.is_over:
             return
-        news = self.reading.news
+        news = news_of(self.reading, self.bench.monitor.program)
         rows = self.frames.frame(self.view, news, 100, 40)
         self.bench.monitor.networks = self.view.visible
         text = "\n".join("".join(piece.text for piece in row) for row in rows)

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fatektool.cli.programs.monitor.keys import SEQUENCES, is_begun, keys_of
+from fatektool.cli.shared.keys import SEQUENCES, is_begun, keys_of
 
 
 @pytest.mark.parametrize(

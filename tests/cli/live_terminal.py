@@ -1,4 +1,4 @@
-"""``monitor`` on a real terminal, whose screen is what an emulator makes of all that comes."""
+"""A command on a real terminal, whose screen is what an emulator makes of all that comes."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ class LiveTerminal(Terminal):
 
     @property
     def _is_whole(self) -> bool:
-        """True if the cursor is in the last line, where each drawing of the screen ends."""
-        return bool(self.screen.cursor.y == self.screen.lines - 1)
+        """True if nothing is below the cursor: there each drawing of the screen ends."""
+        return not any(self.lines[self.screen.cursor.y + 1 :])
 
     def _has(self, holds: str | Callable[[list[str]], bool]) -> bool:
         return holds in "\n".join(self.lines) if isinstance(holds, str) else holds(self.lines)
