@@ -23,7 +23,7 @@ from fatektool.program.archive import Backup
 from fatektool.program.compare import Comparison, compare
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Iterator
+    from collections.abc import Callable, Generator, Iterator, Sequence
     from pathlib import Path
     from typing import Self
 
@@ -105,14 +105,15 @@ class History:
             self._close()
             self._turn.release()
 
-    def record(self, name: str, backup: Backup) -> RecordResult:
-        """Record a backup, if its program differs from the last one recorded for this PLC.
+    def record(self, name: str, backup: Backup, keep: Sequence[str] = ()) -> RecordResult:
+        """Record a backup, if its program or its data differ from the last one recorded for this PLC.
 
         It is on disk when this returns. A failure at any step loses nothing that was recorded before.
 
         Args:
             name: the PLC.
-            backup: its program.
+            backup: its program, and its data if they were saved.
+            keep: globs of the elements whose data ought to be constant; none for the default.
 
         Raises:
             UsageError: the name is not valid, or the folder cannot be written.
@@ -124,12 +125,12 @@ class History:
             seen = None
             if is_repository(self.folder):
                 with self._open() as repository:
-                    seen = compare_with_last(repository, name, backup)
+                    seen = compare_with_last(repository, name, backup, keep)
                 if seen.same:
                     return unchanged(name, seen)
             with writing(self.folder, self._wait_s, self._waiting), self._open() as repository:
                 now = int(self._clock())
-                found = write(repository, name, backup, seen, now=now, wait_s=self._wait_s)
+                found = write(repository, name, backup, seen, keep=keep, now=now, wait_s=self._wait_s)
                 if found.revision is None or not is_due(repository):
                     return found
                 try:

@@ -32,7 +32,12 @@ if TYPE_CHECKING:
 
 
 def subject(
-    name: str, found: Comparison | None, networks: str | None = None, *, damaged: bool = False
+    name: str,
+    found: Comparison | None,
+    networks: str | None = None,
+    *,
+    damaged: bool = False,
+    data: str | None = None,
 ) -> str:
     """The first line of the message.
 
@@ -41,7 +46,11 @@ def subject(
         found: the comparison of the old program with the new one; None if there is no old one.
         networks: the networks that differ, in words; None if a program has no mnemonics.
         damaged: True if there is an old one that cannot be read.
+        data: what changed in the data, in words; None for nothing.
     """
+    if found is not None and found.same and data is not None:
+        return f"{name}: {data}"
+    more = f"; {data}" if data is not None else ""
     if found is None:
         return f"{name}: new backup, the previous one is damaged" if damaged else f"{name}: first backup"
     if found.a_ladder_words != found.b_ladder_words:
@@ -49,7 +58,9 @@ def subject(
     else:
         size = ""
     words = f"{counted(found.word_count, 'word')} in {counted(len(found.pages), 'page')}"
-    return f"{name}: {size}{words} changed" if networks is None else f"{name}: {size}{networks} ({words})"
+    if networks is None:
+        return f"{name}: {size}{words} changed{more}"
+    return f"{name}: {size}{networks} ({words}){more}"
 
 
 def message(
@@ -77,6 +88,8 @@ def message(
         ("source", f"station {source.station} on {source.target}, {source.protocol}{line}"),
         ("read", f"{new.created} by {new.tool}"),
     ]
+    if new.data is not None:
+        rows.append(("data", f"{new.data.sha256}, read {new.data.time}"))
     body = "".join(f"{key:<8} {_plain(value)}\n" for key, value in rows)
     return f"{_plain(first_line)}\n\n{body}".encode()
 

@@ -27,6 +27,7 @@ from fatektool.ladder.differences import compare_code, summary
 from fatektool.ladder.image import code_of
 from fatektool.program.archive import Backup
 from fatektool.program.compare import Comparison, compare
+from fatektool.program.data.compare import data_change
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -68,20 +69,24 @@ class BackupComparison:
         old: the last backup of this PLC; None if there is none that can be read.
         changes: the comparison of the old program with the new one; None without an old one.
         warnings: why the old one cannot be read.
+        data: what changed in the data, in words; None for nothing.
     """
 
     newest: Newest
     old: Backup | None = None
     changes: Comparison | None = None
     warnings: tuple[str, ...] = ()
+    data: str | None = None
 
     @property
     def same(self) -> bool:
-        """True if the last recorded program is the same."""
-        return self.changes is not None and self.changes.same
+        """True if the last recorded program is the same, and so are the data that ought to be constant."""
+        return self.changes is not None and self.changes.same and self.data is None
 
 
-def compare_with_last(repository: Repository, name: str, backup: Backup) -> BackupComparison:
+def compare_with_last(
+    repository: Repository, name: str, backup: Backup, keep: Sequence[str] = ()
+) -> BackupComparison:
     """Compare a backup with the last one that was recorded.
 
     Raises:
@@ -90,7 +95,8 @@ def compare_with_last(repository: Repository, name: str, backup: Backup) -> Back
     found = last_recorded(repository, name)
     if found.old is None:
         return found
-    return replace(found, changes=compare(found.old.program, backup.program))
+    changes = compare(found.old.program, backup.program)
+    return replace(found, changes=changes, data=data_change(found.old.data, backup.data, keep))
 
 
 def last_recorded(repository: Repository, name: str) -> BackupComparison:
@@ -120,6 +126,7 @@ def write(
     backup: Backup,
     seen: BackupComparison | None,
     *,
+    keep: Sequence[str],
     now: int,
     wait_s: float,
 ) -> RecordResult:
@@ -130,6 +137,7 @@ def write(
         name: the PLC.
         backup: its program.
         seen: a comparison before the lock was taken; used again if nothing was written since.
+        keep: globs of the elements whose data ought to be constant.
         now: seconds since 1970.
         wait_s: how long to wait for another git program.
 
@@ -144,13 +152,13 @@ def write(
         found = (
             seen
             if seen is not None and seen.newest.tip == tip
-            else compare_with_last(repository, name, backup)
+            else compare_with_last(repository, name, backup, keep)
         )
         if found.same:
             return unchanged(name, found)
         networks = _networks(found.old, backup)
         few = None if networks is None else summary(networks) or "same code"
-        subject = messages.subject(name, found.changes, few, damaged=bool(found.warnings))
+        subject = messages.subject(name, found.changes, few, damaged=bool(found.warnings), data=found.data)
         blob, tree = _new_file(repository, found.newest.items, name, backup)
         put = partial(write_loose, repository.folder, rights=repository.rights)
         put(blob)

@@ -38,6 +38,7 @@ class PlcEntry:
         project: the WinProladder project with the comments of its elements; None if there is none.
         modbus_map: ``standard``, ``custom``, a map, or a file with one; None for the standard map.
         expect: the expected mode: ``run``, ``stop`` or ``any``.
+        keep: globs of the elements whose data ought to be constant; none for the default.
     """
 
     name: str
@@ -48,6 +49,7 @@ class PlcEntry:
     project: Path | None = None
     modbus_map: str | None = None
     expect: str = "run"
+    keep: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

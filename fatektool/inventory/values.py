@@ -65,6 +65,7 @@ _BESIDE: Final[dict[str, Check[Any]]] = {
     "project": _FileName(),
     "modbus_map": _MapName(),
     "expect": OneOf(EXPECTATIONS),
+    "keep": _Texts(),
 }
 _OF_ALL: Final[dict[str, Check[Any]]] = {"backups": _FileName(), "history": _FileName()}
 KEYS: Final = tuple(CHECKS | _BESIDE)

@@ -67,7 +67,8 @@ def verify_command(
         compared = None
         if wanted is not None:
             there = read_data(plc, plc.detailed_status(), bar.update)
-            compared = compare_data(wanted, there, ignore)
+            keep = () if connection.entry is None else connection.entry.keep
+            compared = compare_data(wanted, there, ignore, keep)
             document |= {"same": result.found.same and compared.same, "data": comparison_document(compared)}
     found = result.found
     address = connection.address

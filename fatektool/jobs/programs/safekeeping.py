@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import DataError, UsageError
 from fatektool.program.archive import load_backup, save_backup
+from fatektool.program.data.compare import data_change
 from fatektool.program.headers.header import PAGE_BYTES
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from fatektool.program.archive import Backup
@@ -36,8 +38,8 @@ def require_ladder(program: Program) -> None:
         )
 
 
-def former_hash(path: Path) -> str | None:
-    """The hash of the program in the backup that is about to be replaced; None if there is no file.
+def former_backup(path: Path) -> Backup | None:
+    """The backup that is about to be replaced; None if there is no file.
 
     Raises:
         DataError: it is damaged.
@@ -46,7 +48,7 @@ def former_hash(path: Path) -> str | None:
     if not path.exists():
         return None
     try:
-        return load_backup(path).program.sha256
+        return load_backup(path)
     except DataError as error:
         with path.open("rb") as file:
             start = file.read(_LOOKED_AT)
@@ -62,7 +64,8 @@ class Replaced:
     """A backup that took the place of the one before.
 
     Attributes:
-        changed: True if the program is another than before; None where there was none before.
+        changed: True if the program, or data that ought to be constant, are other than before; None where
+            there was no backup before.
         damaged: why the one before could not be read; None if it could, or was not there.
     """
 
@@ -70,24 +73,35 @@ class Replaced:
     damaged: str | None = None
 
 
-def replace_backup(backup: Backup, path: Path) -> Replaced:
+def replace_backup(backup: Backup, path: Path, keep: Sequence[str] = ()) -> Replaced:
     """Write a backup in place of the one before. One that is damaged is replaced too.
 
     Args:
         backup: the new one.
         path: the file, which need not be there.
+        keep: globs of the elements whose data ought to be constant; none for the default.
 
     Raises:
-        UsageError: the file is no backup at all, and is kept; or it cannot be written.
+        UsageError: the file is no backup at all, or has data and the new one has none, and is kept; or it
+            cannot be written.
         DataError: the disk is full or broken.
     """
     try:
-        before = former_hash(path)
+        before = former_backup(path)
     except DataError as error:  # to replace it by a good one is what helps
         save_backup(backup, path, overwrite=True)
         return Replaced(None, error.message)
+    if before is not None and before.data is not None and backup.data is None:
+        raise UsageError(
+            f"{path} has the PLC's data too, and is not replaced by the program alone",
+            hint="add --data, or name another folder",
+            file=str(path),
+        )
     save_backup(backup, path, overwrite=True)
-    return Replaced(None if before is None else before != backup.program.sha256)
+    if before is None:
+        return Replaced(None)
+    data = data_change(before.data, backup.data, keep)
+    return Replaced(before.program != backup.program or data is not None)
 
 
 def age_s(backup: Backup, now: datetime) -> float:

@@ -5,11 +5,12 @@ from __future__ import annotations
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, NamedTuple
 
+from fatektool.counts import counted
 from fatektool.program.data.uses import CONSTANT, SYMBOLS, Use, use_of
 from fatektool.protocol.elements import Element
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
     from fatektool.program.data.part import DataPart
 
@@ -55,13 +56,17 @@ class DataComparison(NamedTuple):
         return not self.constant and not self.disabled
 
 
-def compare_data(a: DataPart, b: DataPart, ignore: Iterable[str] = ()) -> DataComparison:
+def compare_data(
+    a: DataPart, b: DataPart, ignore: Iterable[str] = (), keep: Sequence[str] = ()
+) -> DataComparison:
     """Compare what ought to be constant, and find what runs.
 
     Args:
         a: the first.
         b: the second.
         ignore: globs of elements that are not compared, such as ``D1??``.
+        keep: globs of the elements that ought to be constant; none for those that are kept without power and
+            settings, unless they changed while they were read.
     """
     globs = list(ignore)
     unsteady = elements_in(a.moving) | elements_in(b.moving)
@@ -69,7 +74,9 @@ def compare_data(a: DataPart, b: DataPart, ignore: Iterable[str] = ()) -> DataCo
     for each in compare_values(a, b):
         if any(fnmatchcase(str(each.element), glob) for glob in globs):
             continue
-        if each.use in CONSTANT and each.element not in unsteady:
+        name = str(each.element)
+        by_use = each.use in CONSTANT and each.element not in unsteady
+        if any(fnmatchcase(name, glob) for glob in keep) if keep else by_use:
             constant.append(each)
         else:
             running.append(each.element)
@@ -80,6 +87,24 @@ def compare_data(a: DataPart, b: DataPart, ignore: Iterable[str] = ()) -> DataCo
         tuple(running),
         {name: states for name, states in disabled.items() if states[0] is not states[1]},
     )
+
+
+def data_change(old: DataPart | None, new: DataPart | None, keep: Sequence[str] = ()) -> str | None:
+    """What changed from one backup to the next, in words; None if nothing that ought to be constant.
+
+    Args:
+        old: the data of the first; None if it has none.
+        new: those of the second. Without any nothing is compared.
+        keep: see ``compare_data``.
+    """
+    if new is None:
+        return None
+    if old is None:
+        return "data saved for the first time"
+    found = compare_data(old, new, keep=keep)
+    counts = [(found.constant, "value"), (found.disabled, "disabled discrete")]
+    words = [counted(len(each), noun) for each, noun in counts if each]
+    return f"{' and '.join(words)} changed" if words else None
 
 
 def elements_in(spans: Iterable[str]) -> set[Element]:

@@ -11,11 +11,12 @@ import click
 from fatektool.cli.many.alarms import Alarms, alarm_options
 from fatektool.cli.many.fleet.run import Orders, ended, fleet_options, news_option, opened, run_fleet
 from fatektool.cli.many.outcome import JobResult
+from fatektool.cli.programs.data_view import warn_of_data
 from fatektool.cli.programs.documents import saved_document
 from fatektool.cli.shared.image_words import warn_of_image
 from fatektool.cli.shared.options import PATH
 from fatektool.cli.shared.places import require_folder_for
-from fatektool.errors import FatektoolError, UsageError
+from fatektool.errors import FatektoolError, PlcError, UsageError
 from fatektool.jobs.programs.backup import read_backup
 from fatektool.jobs.programs.known import KnownPages, first_known
 from fatektool.jobs.programs.safekeeping import replace_backup, require_ladder
@@ -49,6 +50,7 @@ if TYPE_CHECKING:
     "[env: FATEKTOOL_HISTORY]",
 )
 @click.option("--push", "remote", metavar="REMOTE", help="Then push the history: a folder, ssh://, https://.")
+@click.option("--data", is_flag=True, help="Save the data of the PLCs too, as 'backup --data' does.")
 @click.option("--single-pass", is_flag=True, help="Read once instead of twice; nothing is compared.")
 @click.option("--any-header", is_flag=True, help="Keep images with an invalid header, and mark them.")
 @alarm_options(changes=True)
@@ -62,6 +64,7 @@ def backup_command(
     folder: Path | None,
     history: Path | None,
     remote: str | None,
+    data: bool,
     single_pass: bool,
     any_header: bool,
 ) -> int:
@@ -69,7 +72,8 @@ def backup_command(
 
     Each file is written completely or not at all: after a failure the previous backup is still there. An
     image without a program, where all bytes are the same, is a failure. 'fatektool history' shows the records
-    of --history. A failed push is a warning, and exit 1.
+    of --history. With --data a change of data is one only if they ought to be constant: 'keep' of the
+    inventory. A failed push is a warning, and exit 1.
     """
     folder, history = folder or orders.inventory.backups, history or orders.inventory.history
     if folder is None and history is None:
@@ -83,7 +87,7 @@ def backup_command(
     if folder is not None:
         require_folder_for(folder, voice)
     with nullcontext() if history is None else _opened(history, voice) as kept:
-        work = _work(voice, folder, kept, single_pass=single_pass, any_header=any_header)
+        work = _work(voice, folder, kept, data=data, single_pass=single_pass, any_header=any_header)
         document, interrupted = run_fleet("backup", orders, alarms, voice, work)
     if history is not None and remote is not None and not interrupted:
         document["push"] = _push(history, remote, voice)
@@ -116,6 +120,7 @@ def _work(
     folder: Path | None,
     history: History | None,
     *,
+    data: bool,
     single_pass: bool,
     any_header: bool,
 ) -> Callable[[PlcEntry, Turn[JobResult]], JobResult]:
@@ -125,6 +130,7 @@ def _work(
         voice: prints warnings.
         folder: where NAME.json is written; None for nowhere.
         history: records changes, open until all PLCs are done; None for none.
+        data: as for ``backup``.
         single_pass: as for ``backup``.
         any_header: as for ``backup``.
     """
@@ -135,7 +141,12 @@ def _work(
         known = None if single_pass else _known(entry, folder, history, own)
         with opened(entry, turn, voice, Command.READ_PAGE) as plc:
             found = read_backup(
-                plc, single_pass=single_pass, any_header=any_header, known=known, progress=turn.progress
+                plc,
+                single_pass=single_pass,
+                any_header=any_header,
+                known=known,
+                data=data,
+                progress=turn.progress,
             )
         program = found.backup.program
         require_ladder(program)
@@ -144,16 +155,20 @@ def _work(
         changed = None
         path = None if folder is None else folder / f"{entry.name}.json"
         if path is not None:
-            replaced = replace_backup(found.backup, path)
+            replaced = replace_backup(found.backup, path, entry.keep)
             changed = replaced.changed
             if replaced.damaged is not None:
                 voice.warn(f"{replaced.damaged}: the file is replaced")
         if history is not None:
-            changed = _record(history, entry.name, found.backup, own)
+            changed = _record(history, entry, found.backup, own)
         document = saved_document(found, path or kept_in or Path())
         said = {None: "first backup", True: "CHANGED", False: "unchanged"}[changed]
         words = f"{said}, {program.header.text()}, {program.ladder_words} words"
-        return JobResult(0, document, words, path or kept_in, changed)
+        code = 0
+        if found.backup.data is not None and found.backup.data.errors:
+            warn_of_data(found.backup.data, own)
+            code = PlcError.exit_code
+        return JobResult(code, document, words, path or kept_in, changed)
 
     return work
 
@@ -171,9 +186,9 @@ def _known(entry: PlcEntry, folder: Path | None, history: History | None, voice:
     return first_known((former, entry.reference), voice.detail)
 
 
-def _record(history: History, name: str, backup: Backup, voice: Voice) -> bool | None:
+def _record(history: History, entry: PlcEntry, backup: Backup, voice: Voice) -> bool | None:
     """Keep a backup in the history; whether it is another than the one there, None for the first."""
-    found = history.record(name, backup)
+    found = history.record(entry.name, backup, entry.keep)
     for warning in found.warnings:
         voice.warn(warning)
     return None if found.changes is None else found.revision is not None

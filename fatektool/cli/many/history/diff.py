@@ -11,6 +11,7 @@ from fatektool.cli.programs.differences import show_differences
 from fatektool.cli.shared.options import completing, voice_options
 from fatektool.cli.shared.report import report_option
 from fatektool.history.history import History
+from fatektool.program.data.compare import compare_data
 from fatektool.project.comparison import compare_programs
 
 if TYPE_CHECKING:
@@ -36,4 +37,6 @@ def diff_command(name: str, a: str, b: str, folder: Path, voice: Voice, *, repor
     one, other = history.show(name, a), history.show(name, b)
     old, new = one.backup.program, other.backup.program
     sides = (one.label, old.sha256), (other.label, new.sha256)
-    return show_differences(*sides, compare_programs(old, new), voice, report)
+    before, after = one.backup.data, other.backup.data
+    data = None if before is None or after is None else compare_data(before, after)
+    return show_differences(*sides, compare_programs(old, new), voice, report, data=data)

@@ -50,4 +50,5 @@ def _entry_document(entry: PlcEntry) -> dict[str, Any]:
         "project": None if entry.project is None else str(entry.project),
         "modbus_map": entry.modbus_map,
         "expect": entry.expect,
+        "keep": list(entry.keep),
     }
