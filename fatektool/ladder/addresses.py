@@ -21,35 +21,35 @@ from fatektool.ladder.grades import Grade
 
 LAST_BIT: Final = 0xFFF
 BITS_AT: Final = 0x0800
-"""The byte address at which bit address 0 lies; eight bits a byte."""
+"""The byte address of bit address 0; eight bits in each byte."""
 
 
 class Area(Enum):
-    """Which of the address spaces."""
+    """The address spaces."""
 
     BITS = "bits"
     BYTES = "bytes"
 
 
 class Span(NamedTuple):
-    """The memory that an element takes: from ``first`` up to, not with, ``end``, in its area's unit."""
+    """The memory of an element: from ``first`` to before ``end``, in the unit of its area."""
 
     area: Area
     first: int
     end: int
 
     def meets(self, other: Span) -> bool:
-        """True if the two have memory in common."""
+        """True if both have common memory."""
         return self.area is other.area and self.first < other.end and other.first < self.end
 
 
 class Name(NamedTuple):
-    """What an address is called.
+    """The name of an address.
 
     Attributes:
-        text: as the vendor prints it: ``M310``, ``TR 0``, ``R8``; ``@6000`` where nothing is known.
-        grade: how sure that is.
-        element: the element that a PLC can be asked for; None where the address is not one.
+        text: as the vendor prints it: ``M310``, ``TR 0``, ``R8``; ``@6000`` if not known.
+        grade: the certainty of the name.
+        element: the element of a PLC; None if the address is not one.
     """
 
     text: str
@@ -106,9 +106,9 @@ _BIT_STARTS: Final = [row.first for row in _BITS]
 _BYTE_STARTS: Final = [row.first for row in _BYTES]
 
 STORES: Final = range(0x400, 0x428)
-"""Bit addresses of TR: with OUT what a line carries is stored, with LD it is taken up again."""
+"""Bit addresses of TR: OUT stores the state of a line, LD uses it again."""
 DRAWING: Final = range(0xFE2, 0xFFC)
-"""Bit addresses that are a wire (``SHORT``) or a gap (``OPEN``); which of them only says how it is drawn."""
+"""Bit addresses of a wire (``SHORT``) or a gap (``OPEN``); the address only affects the drawing."""
 _SURE_DRAWING: Final = range(0xFE2, 0xFF0)
 OUTPUTS: Final = range(0xFFC, 0xFFF)
 """Bit addresses that with LD are the outputs of the function before: ``FO 0`` to ``FO 2``."""
@@ -117,7 +117,7 @@ _WRITTEN: Final = re.compile(r"(D(?=[A-Z]))?([A-Z]+)([0-9]{1,5})", re.ASCII)
 
 
 def bit_name(address: int) -> Name | None:
-    """What a bit address of 12 bits is called; None for drawing, outputs of functions and FFF."""
+    """The name of a bit address of 12 bits; None for drawing, outputs of functions and FFF."""
     row = _BITS[bisect_right(_BIT_STARTS, address) - 1]
     number = row.number_at(address)
     if number is None:
@@ -128,12 +128,12 @@ def bit_name(address: int) -> Name | None:
 
 
 def drawing_grade(address: int) -> Grade:
-    """How sure it is that this address of ``DRAWING`` is a wire or a gap."""
+    """The certainty that this address of ``DRAWING`` is a wire or a gap."""
     return Grade.A if address in _SURE_DRAWING else Grade.C
 
 
 def register_name(address: int) -> Name:
-    """What a byte address of 16 bits is called; ``@6000`` where nothing is known."""
+    """The name of a byte address of 16 bits; ``@6000`` if not known."""
     if address & 0x8000:
         base = register_name(address & 0x7FFF)
         if base.element is not None and base.element.startswith(("R", "D")):
@@ -181,9 +181,9 @@ def register_span(address: int, words: int = 1) -> Span:
 
 
 def spans_of(element: str) -> tuple[Span, ...]:
-    """All memory that an element's name stands for: ``T5`` its contact and its value, ``DR2`` two registers.
+    """All memory of an element's name: ``T5`` its contact and its value, ``DR2`` two registers.
 
-    ``RT5`` and ``RC5`` are the values alone. Empty for what no program of this family names.
+    ``RT5`` and ``RC5`` are only the values. Empty for names that this family does not have.
     """
     found = _WRITTEN.fullmatch(element)
     if not found:

@@ -1,10 +1,11 @@
-"""Two sequences side by side, as git lays lines: what is the same, what was put in, what is gone.
+"""Alignment of two sequences, as git aligns lines: equal, inserted and removed parts.
 
 ::
 
-    1  equal beginning and end are taken off
-    2  what stands once in both, in the same order, is held on to (patience): the gaps between are laid alone
-    3  a gap without such is laid by difflib, whose time grows with the square; if too large, replaced whole
+    1  equal parts at the beginning and end are removed
+    2  items that occur once in both, in the same order, are anchors (patience); the gaps are aligned
+    separately 3  a gap without anchors is aligned by difflib, in quadratic time; if too large, it is one
+    replacement
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ _DEEPEST: Final = 50
 
 
 class AlignedBlock(NamedTuple):
-    """A stretch of both: ``a[a_first:a_end]`` and ``b[b_first:b_end]``, which are equal or not."""
+    """A part of both: ``a[a_first:a_end]`` and ``b[b_first:b_end]``, which are equal or not."""
 
     equal: bool
     a_first: int
@@ -32,7 +33,7 @@ class AlignedBlock(NamedTuple):
 
 
 class _Gap(NamedTuple):
-    """A stretch of both that is to be laid, and how many others it was found in."""
+    """A part of both that is to be aligned, and its depth."""
 
     a_first: int
     a_end: int
@@ -42,7 +43,7 @@ class _Gap(NamedTuple):
 
 
 def align(a: Sequence[Hashable], b: Sequence[Hashable]) -> list[AlignedBlock]:
-    """Lay two sequences side by side; the blocks in order are both, and no two neighbours are of a kind."""
+    """Align two sequences; the blocks, in order, are both sequences; equal and unequal blocks alternate."""
     found: list[AlignedBlock] = []
     for block in _lay(a, b, _Gap(0, len(a), 0, len(b))):
         if block.a_first == block.a_end and block.b_first == block.b_end:
@@ -87,7 +88,7 @@ def _middle(a: Sequence[Hashable], b: Sequence[Hashable], gap: _Gap) -> Iterator
 
 
 def _anchors(a: Sequence[Hashable], b: Sequence[Hashable]) -> list[tuple[int, int]]:
-    """What stands once in both: the longest row of them that is in order in both."""
+    """Items that occur once in both: the longest sequence of them with the same order in both."""
     in_a, in_b = Counter(a), Counter(b)
     places = {item: place for place, item in enumerate(b) if in_b[item] == 1}
     pairs = [(x, places[item]) for x, item in enumerate(a) if in_a[item] == 1 and item in places]

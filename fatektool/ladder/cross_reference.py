@@ -1,9 +1,9 @@
-"""Who reads and who writes each element, and what is odd about it.
+"""The instructions that read and write each element, and unusual findings.
 
-An element's memory counts, not its name alone: what reads WM0 reads M5, what writes DR10 writes R11, a
-timer's contact and its value are one element. A table (SR, WR, QU) goes on behind the register that is named,
-and it is not said how far: no register behind one is called unread or unwritten, nor any where one is found
-by a pointer.
+The memory of an element counts, not only its name: a read of WM0 is a read of M5, a write of DR10 is a write
+of R11, a timer's contact and its value are one element. A table (SR, WR, QU) begins at the register in the
+instruction, with unknown length: no register after it is reported as unread or unwritten, and none that may
+be used by a pointer.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class FindingKind(StrEnum):
-    """What is odd about an element."""
+    """The kinds of findings about an element."""
 
     DOUBLE_COIL = "double-coil"
     NEVER_READ = "never-read"
@@ -39,7 +39,7 @@ class InstructionPlace(NamedTuple):
 
 @dataclass
 class Uses:
-    """Where an element is read and written.
+    """The instructions that read and write an element.
 
     Attributes:
         reads: instructions that depend on it.
@@ -51,11 +51,11 @@ class Uses:
 
 
 class XrefFinding(NamedTuple):
-    """Something odd.
+    """A finding.
 
     Attributes:
-        kind: what.
-        element: about which element.
+        kind: of the finding.
+        element: the element.
         where: the instructions that show it.
     """
 
@@ -82,7 +82,7 @@ _SYSTEM_REGISTERS: Final = Span(Area.BYTES, spans_of("R3840")[0].first, spans_of
 
 
 class CrossReference:
-    """A program's elements and who uses them.
+    """The elements of a program, and the instructions that use them.
 
     Args:
         code: the program.
@@ -107,11 +107,11 @@ class CrossReference:
 
     @property
     def elements(self) -> list[str]:
-        """The elements that the program names, by kind and number."""
+        """The elements in the program, by kind and number."""
         return sorted({access.element for access in self._accesses}, key=_order)
 
     def uses(self, element: str) -> Uses:
-        """Where an element is read and written, under its own name or another."""
+        """The instructions that read and write an element, by its own name or another."""
         return self._uses(spans_of(element))
 
     def _uses(self, spans: Iterable[Span]) -> Uses:
@@ -124,7 +124,7 @@ class CrossReference:
         return found
 
     def findings(self) -> list[XrefFinding]:
-        """What is odd: an element with two coils, one that nothing reads or nothing writes."""
+        """The findings: elements with two coils, without reads or without writes."""
         found = [*self._double_coils()]
         read_on, written_on = self._tables(reads=True), self._tables(reads=False)
         for element in self.elements:
@@ -165,7 +165,7 @@ class CrossReference:
         return found
 
     def _tables(self, *, reads: bool) -> dict[str, int]:
-        """Where the first table of each kind of element begins that is read, or written."""
+        """The beginning of the first table of each kind of element that is read, or written."""
         starts: dict[str, int] = {}
         for access in self._accesses:
             if access.goes_on and (access.reads if reads else access.writes):
@@ -180,7 +180,7 @@ def _is_system(spans: Iterable[Span]) -> bool:
 
 
 def _indexed_symbols(code: Code) -> set[str]:
-    """The kinds of registers that an operand behind a pointer may be: ``R0V``, ``D0[P2+P0]?``."""
+    """The kinds of registers that an operand with a pointer may be: ``R0V``, ``D0[P2+P0]?``."""
     texts = (operand.text for instruction in code.instructions for operand in instruction.operands)
     return {text[0] for text in texts if text.startswith(("R", "D")) and (text.endswith("V") or "[" in text)}
 

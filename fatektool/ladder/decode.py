@@ -1,8 +1,8 @@
-"""Words -> instructions, and back. Total: whatever the words are, each comes out in one instruction.
+"""Words -> instructions, and back. Total: any words are decoded, each into one instruction.
 
-What is not known, and what is cut short by the end of the code, stands for itself. How many words an
-unknown function has is not known either, so reading goes on at the next word that begins a network. Words
-of registers can look like one (D200 is 9041, ORG Y144): a beginning counts if something can follow it.
+Unknown words, and instructions that the end of the code cuts off, are kept as words. The length of an unknown
+function is not known either, so decoding continues at the next word that begins a network. Words of registers
+can look like one (D200 is 9041, ORG Y144): it counts as a beginning if a valid instruction can follow.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _RESET_AND_SET: Final = (0x00, 0x10)
 _PREFIX: Final = 0xE0
 _END: Final = 0xFFFF
 _LABEL: Final = 0xEF
-"""The low byte of a label; below it stand instructions of one word, with a prefix two, above it functions."""
+"""The low byte of a label; below are instructions of one word (with a prefix two), above are functions."""
 
 _X: Final = range(0x100)
 _LAST_LIKE_D: Final = 0x48
@@ -34,7 +34,7 @@ _LAST_LIKE_D: Final = 0x48
 
 
 def _index(head_words: int) -> list[tuple[tuple[int, ...], dict[tuple[int, ...], Form]]]:
-    """The forms with heads of so many words, by which bits are fixed and what these are."""
+    """The forms with heads of this number of words, by the mask and value of their fixed bits."""
     found: dict[tuple[int, ...], dict[tuple[int, ...], Form]] = {}
     for form in FORMS:
         if form.head_words == head_words:
@@ -48,7 +48,7 @@ _TWO: Final = _index(2)
 
 
 def decode(words: Sequence[int]) -> tuple[Instruction, ...]:
-    """Read code.
+    """Decode code.
 
     Args:
         words: 0 to 65535 each, from the beginning of a unit to its end.
@@ -66,7 +66,7 @@ def decode(words: Sequence[int]) -> tuple[Instruction, ...]:
 
 
 def end_of(words: Sequence[int], place: int) -> int:
-    """Where a unit that begins here ends: at FFFF where an instruction would begin, or with the words."""
+    """The end of a unit that begins here: at FFFF instead of an instruction, or at the end of the words."""
     while place < len(words) and words[place] != _END:
         instruction = _instruction(words, place)
         place += len(instruction.words) if instruction is not None else 1
@@ -79,7 +79,7 @@ def encode(instructions: Iterable[Instruction]) -> tuple[int, ...]:
 
 
 def form_at(words: Sequence[int], place: int) -> Form | None:
-    """The row whose head stands here; None if there is none."""
+    """The form whose head is at this place; None if there is none."""
     first = words[place]
     for mask, forms in _ONE:
         form = forms.get(first & mask)
@@ -96,7 +96,7 @@ def form_at(words: Sequence[int], place: int) -> Form | None:
 
 @lru_cache(maxsize=8192)
 def _of_one_word(word: int) -> Instruction | None:
-    """A contact, coil or mark; None for the head of what is longer. Most of a program is these."""
+    """A contact, coil or mark, the most frequent instructions; None for the head of a longer one."""
     for mask, forms in _ONE:
         form = forms.get(word & mask)
         if form is not None:
@@ -123,7 +123,7 @@ def _instruction(words: Sequence[int], place: int) -> Instruction | None:
 
 
 def _has_an_address(instruction: Instruction) -> bool:
-    """False for a contact of an address that is none: the last one, or an output of a function without LD."""
+    """False for a contact with an invalid address: the last one, or an output of a function without LD."""
     bit = instruction.bit
     if bit is None or bit not in {LAST_BIT, *OUTPUTS}:
         return True
@@ -131,7 +131,7 @@ def _has_an_address(instruction: Instruction) -> bool:
 
 
 def _unknown(words: Sequence[int], place: int) -> Instruction:
-    """What is not known, with what may belong to it."""
+    """An unknown instruction, with the words that may belong to it."""
     form = form_at(words, place)
     if form is not None:  # an address that is none, or cut short
         contact = form.shape is Shape.CONTACT
@@ -145,7 +145,7 @@ def _unknown(words: Sequence[int], place: int) -> Instruction:
 
 
 def _begins(words: Sequence[int], place: int) -> bool:
-    """True if a network can begin here: with a word that begins one, and something that can follow it."""
+    """True if a network can begin here: a word that begins one, and a valid instruction after it."""
     first = _instruction(words, place)
     if first is None or not first.form.begins:
         return False
@@ -161,10 +161,10 @@ def _begins(words: Sequence[int], place: int) -> bool:
 
 
 def _can_follow(second: Instruction, *, like_a_register: bool) -> bool:
-    """True if this can stand behind the contact that begins a network.
+    """True if this can follow the contact that begins a network.
 
     Args:
-        second: what the next words look like.
+        second: the instruction that the next words look like.
         like_a_register: True if the contact's word is a much used register, too: then OUTR and OUTS, which
             constants and registers look like, prove nothing.
     """

@@ -19,7 +19,7 @@ _MOST_PAIRS: Final = 100_000
 
 
 class Change(StrEnum):
-    """What became of a network."""
+    """The change of a network."""
 
     ADDED = "added"
     REMOVED = "removed"
@@ -32,7 +32,7 @@ class DiffLine(NamedTuple):
     Attributes:
         sign: ``-``, ``+`` or a space.
         text: the instruction.
-        elements: those that it names.
+        elements: those in the instruction.
     """
 
     sign: str
@@ -59,12 +59,12 @@ class NetworkChange:
 
     @property
     def lines(self) -> tuple[str, ...]:
-        """The instructions, each behind ``-``, ``+`` or a space."""
+        """The instructions, each after ``-``, ``+`` or a space."""
         return tuple(map(str, self.diff))
 
     @property
     def change(self) -> Change:
-        """What became of it."""
+        """The kind of change."""
         if self.a is None:
             return Change.ADDED
         return Change.REMOVED if self.b is None else Change.CHANGED
@@ -93,7 +93,7 @@ class NetworkChange:
 
     @property
     def name(self) -> str:
-        """The number that it has now, or had: ``N0009``."""
+        """Its present or previous number: ``N0009``."""
         network = self.b or self.a
         assert network is not None  # noqa: S101  # one of the two is there
         return network.name
@@ -113,7 +113,7 @@ def compare_code(a: Code, b: Code) -> tuple[NetworkChange, ...]:
 
 
 def summary(changes: Sequence[NetworkChange], most: int = 6) -> str:
-    """The networks in a few words: ``N0009 changed, N0031 added``."""
+    """The networks as a short text: ``N0009 changed, N0031 added``."""
     parts = [f"{change.name} {change.change}" for change in changes[:most]]
     more = len(changes) - most
     return ", ".join([*parts, f"{more} networks more"] if more > 0 else parts)
@@ -125,7 +125,7 @@ def instruction_line(found: Instruction) -> str:
 
 
 def _pairs(old: Sequence[Network], new: Sequence[Network]) -> Iterator[tuple[Network | None, Network | None]]:
-    """Which of these became which, in order: those that have most in common."""
+    """The pairs of old and new networks, in order: those with the most in common."""
     if len(old) * len(new) > _MOST_PAIRS:
         yield from _in_order(old, new)
         return
@@ -155,7 +155,7 @@ def _pairs(old: Sequence[Network], new: Sequence[Network]) -> Iterator[tuple[Net
 def _in_order(
     old: Sequence[Network], new: Sequence[Network]
 ) -> Iterator[tuple[Network | None, Network | None]]:
-    """The first with the first, where there are too many to hold each against each."""
+    """Pairs in order, if there are too many for a comparison of each with each."""
     for here, there in zip_longest(old, new):
         if here is None or there is None:
             yield here, there
@@ -167,7 +167,7 @@ def _in_order(
 
 
 class _Looks(NamedTuple):
-    """What a network is known again by."""
+    """The properties by which a network is recognised."""
 
     unit: int
     instructions: frozenset[tuple[int, ...]]
@@ -183,7 +183,7 @@ class _Looks(NamedTuple):
         )
 
     def likeness(self, other: _Looks) -> float:
-        """How much the two have in common, 0 to 1; 0 for those that are no version of each other."""
+        """How much the two have in common, 0 to 1; 0 if they are not versions of one network."""
         if self.unit != other.unit:
             return 0.0
         share = len(self.instructions & other.instructions)

@@ -1,4 +1,4 @@
-"""The forms that an instruction can have: which words it is made of, and how it is printed.
+"""The forms of instructions: their words, and their text.
 
 A form's head is one or two words, part of their bits fixed and the others free::
 
@@ -25,7 +25,7 @@ class Shape(Enum):
     """The kinds of forms."""
 
     CONTACT = auto()  # a contact or coil: the free bits of its last head word are a bit address
-    MARK = auto()  # one word, the free bits say how it is drawn
+    MARK = auto()  # one word, the free bits define the drawing
     FUNCTION = auto()  # the free bits are the low nibble
     LABEL = auto()  # the free bits are a character
     UNKNOWN = auto()  # no form: the words as they are
@@ -36,13 +36,13 @@ class Form:
     """A row of the table: one instruction of the PLC.
 
     Attributes:
-        shape: what kind of form.
+        shape: the kind of form.
         text: how it is printed: ``{0}`` the first operand's text, ``{bit}`` a contact's element, ``{P}`` the
             pulse form's mark; the other names are in ``printing``.
         fixed: the head's words with their free bits 0.
         free: the free bits of each of these words.
         parts: the operands, in the order of their words.
-        grade: how sure the text is.
+        grade: the certainty of the text.
         usual: the low nibbles, as hex digits, that were seen; others are of grade C.
         pulse: those of them that are the pulse form, of grade B.
         begins: True if a network begins with it.
@@ -67,9 +67,9 @@ class Form:
 
     @property
     def operand_words(self) -> int:
-        """Words behind the head."""
+        """Words after the head."""
         return sum(part.words for part in self.parts)
 
 
 UNKNOWN = Form(Shape.UNKNOWN, "??", (), (), grade=Grade.C)
-"""What is not known: its words stand for themselves."""
+"""The form of unknown instructions: their words are kept."""

@@ -1,11 +1,11 @@
-"""How sure a thing is that is read from a program.
+"""The certainty of what is read from a program.
 
-The vendor publishes nothing on how a program's words are made. What stands here was worked out from public
-project files and from printouts of the vendor's program, and each row of a table carries its evidence::
+The vendor publishes nothing about the words of a program. The tables here were derived from public project
+files and from printouts of the vendor's software, and each row has its evidence::
 
-    A   the vendor's program printed it so, or every file checked agrees
-    B   read from use in one or a few files: comments, file names, number of operands
-    C   a guess that fits
+    A   printed by the vendor's software, or all checked files agree
+    B   found from its use in one or a few files: comments, file names, number of operands
+    C   assumed, without contradiction
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Grade(StrEnum):
-    """How sure: A is the vendor's own print, C a guess that fits."""
+    """The certainty: A is the vendor's own print, C is assumed."""
 
     A = "A"
     B = "B"
@@ -26,5 +26,5 @@ class Grade(StrEnum):
 
 
 def worst(grades: Iterable[Grade]) -> Grade:
-    """The least sure of them; A if there are none."""
+    """The least certain of them; A if there are none."""
     return max(grades, default=Grade.A)

@@ -2,7 +2,7 @@
 
 ::
 
-    fbs   byte 0200: main units, FFFF, sub units, FFFF; words 131, 134 and 135 say how much of each
+    fbs   byte 0200: main units, FFFF, sub units, FFFF; their lengths in words 131, 134 and 135
     FBE   byte 2800: main units, FFFF, sub units, FFFF; ends before the settings at 6700 (one file seen)
 
 Words of the image have their low byte first.
@@ -29,7 +29,7 @@ _FBE: Final = slice(0x2800, 0x6700)
 
 
 def code_of(program: Program) -> Code | None:
-    """The code of a program; None where it is not known how it is made, or the header does not hold."""
+    """The code of a program; None if its form is not known, or the header is invalid."""
     header = program.header
     if header.family != FBS or not header.valid:
         return None
@@ -41,13 +41,13 @@ def words_of_image(image: bytes, *, swapped: bool = False) -> tuple[int, ...]:
 
     Args:
         image: its bytes.
-        swapped: the two bytes of each word are exchanged.
+        swapped: the two bytes of each word are swapped.
     """
     return struct.unpack(f"{'>' if swapped else '<'}{len(image) // 2}H", image[: len(image) // 2 * 2])
 
 
 def fbs_code(words: Sequence[int]) -> Code:
-    """The code of an image of the FBs family, whose header holds."""
+    """The code of an image of the FBs family with a valid header."""
     used, main_end = words[_USED], words[_MAIN_END] // 2
     behind = CODE_WORD + used + 1
     main = words[CODE_WORD : min(main_end, behind) - 1]
@@ -55,7 +55,7 @@ def fbs_code(words: Sequence[int]) -> Code:
 
 
 def fbe_code(image: bytes) -> Code:
-    """The code of an FBE's image, which names no length: up to FFFF where an instruction would begin."""
+    """The code of an FBE's image, which has no length: up to FFFF instead of an instruction."""
     words = words_of_image(image[_FBE])
     first = _FBE.start // 2
     main = end_of(words, 0)

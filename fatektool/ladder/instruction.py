@@ -1,7 +1,7 @@
-"""One instruction: its form, what stands in the form's free bits, and its operands.
+"""One instruction: its form, the form's free bits, and its operands.
 
-It is what its words are: two instructions are equal if their words are. All that is shown of it is worked out
-from the form when it is asked for.
+Two instructions are equal if their words are equal. Its text and properties are computed from the form when
+they are needed.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ if TYPE_CHECKING:
 
 
 class Access(NamedTuple):
-    """What an instruction does to an element.
+    """The access of an instruction to an element.
 
     Attributes:
         element: its name.
         spans: the memory.
         reads: it depends on it.
         writes: it may change it.
-        goes_on: the registers behind it belong to it too, it is not known how many.
+        goes_on: an unknown number of registers after it belong to it too.
     """
 
     element: str
@@ -43,8 +43,8 @@ class Instruction:
     """An instruction.
 
     Attributes:
-        form: the row of the table; ``UNKNOWN`` where there is none.
-        free: what stands in the free bits of each head word.
+        form: the row of the table; ``UNKNOWN`` if there is none.
+        free: the free bits of each head word.
         values: each operand's value; of an unknown instruction its words.
     """
 
@@ -54,7 +54,7 @@ class Instruction:
 
     @property
     def known(self) -> bool:
-        """False where the words stand for themselves."""
+        """False for unknown words."""
         return self.form is not UNKNOWN
 
     @cached_property
@@ -70,7 +70,7 @@ class Instruction:
 
     @property
     def bit(self) -> int | None:
-        """The bit address of a contact or coil; None for all else."""
+        """The bit address of a contact or coil; None for other instructions."""
         if self.form.shape is not Shape.CONTACT:
             return None
         free = self.free[-1]
@@ -78,7 +78,7 @@ class Instruction:
 
     @property
     def is_drawing(self) -> bool:
-        """True for a wire or a gap, and for what is there for the drawing alone."""
+        """True for a wire or a gap, and for instructions only for the drawing."""
         return self.form.text == "" or (self.bit is not None and self.bit in DRAWING)
 
     @cached_property
@@ -93,14 +93,14 @@ class Instruction:
 
     @cached_property
     def grade(self) -> Grade:
-        """How sure its text is."""
+        """The certainty of its text."""
         return worst((self.form.grade, self._head_grade(), *(part.grade for part in self.operands)))
 
     @cached_property
     def text(self) -> str:
-        """As the vendor prints it, one space between parts; ``~`` before what is not its own word.
+        """The text as the vendor prints it, one space between parts; ``~`` before other names.
 
-        ``?? 1AF5 2814`` for what is not known; empty for drawing that the vendor's program does not print.
+        ``?? 1AF5 2814`` for unknown words; empty for drawing that the vendor's software does not print.
         """
         if not self.known:
             return " ".join(["??", *(f"{word:04X}" for word in self.words)])
@@ -126,7 +126,7 @@ class Instruction:
 
     @cached_property
     def elements(self) -> tuple[str, ...]:
-        """The elements that it names, each once, in the order of their words."""
+        """Its elements, each once, in the order of their words."""
         return tuple(dict.fromkeys(access.element for access in self.accesses))
 
     def _contact(self) -> str:
@@ -154,5 +154,5 @@ class Instruction:
 
 
 def unknown(words: tuple[int, ...]) -> Instruction:
-    """Words that are no instruction that is known."""
+    """An instruction of unknown words."""
     return Instruction(UNKNOWN, (), words)

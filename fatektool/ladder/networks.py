@@ -1,8 +1,8 @@
-"""Instructions in networks, networks in units: what a program's code says.
+"""The structure of a program's code: instructions in networks, networks in units.
 
-A program has a main unit and a sub unit, each a row of networks; numbers run through both, from 0. A network
-begins with a contact that begins a line (ORG, ORGF), a label, or a step (STP, FROM, STPEND); the first of a
-unit with whatever stands there.
+A program has a main unit and a sub unit, each a sequence of networks; the numbers run through both, from 0. A
+network begins with a contact that begins a line (ORG, ORGF), a label, or a step (STP, FROM, STPEND); the
+first of a unit with any instruction.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class Network:
         word: the place of its first word in the code, from 0, the end mark between two units not counted.
         place: the place of its first word in the image.
         unit: 0 for the main unit, 1 for the sub unit.
-        instructions: what it is made of.
+        instructions: of the network.
     """
 
     number: int
@@ -46,7 +46,7 @@ class Network:
 
     @property
     def addresses(self) -> range:
-        """The byte addresses of the image that it takes, as a project names them."""
+        """Its byte addresses in the image, as in a project."""
         return range(2 * self.place, 2 * (self.place + len(self.words)))
 
     @cached_property
@@ -65,11 +65,11 @@ class Network:
 
 @dataclass(frozen=True)
 class Code:
-    """A program's code; what it says is read when it is asked for.
+    """A program's code; it is decoded when needed.
 
     Attributes:
         units: the words of the main unit, and those of the sub unit.
-        places: where each begins in the image, in words.
+        places: the beginning of each in the image, in words.
     """
 
     units: tuple[tuple[int, ...], ...]
@@ -97,7 +97,7 @@ class Code:
 
     @property
     def unknown_words(self) -> int:
-        """How many words are not understood."""
+        """The number of unknown words."""
         return sum(len(found.words) for found in self.instructions if not found.known)
 
 

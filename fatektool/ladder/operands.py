@@ -1,12 +1,12 @@
-"""The operands of a function: what their words mean, how they are printed, what the function does to them.
+"""The operands of a function: the meaning of their words, their text, and their use by the function.
 
-An operand takes one word or two, high word first, and each word's bytes are swapped::
+An operand has one or two words, high word first, and the bytes of each word are swapped::
 
     100A           -> 0A10          R8
     0000 3C00      -> 0000003C      60, of 32 bits
     7A44 0000      -> 447A0000      1000.0
 
-Whether a source is a constant stands in the low nibble of the function's word, a bit for each of two.
+The low nibble of the function's word has a bit for each of two sources, which is set for a constant.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ if TYPE_CHECKING:
 
 
 class OperandKind(Enum):
-    """What an operand's value is."""
+    """The kind of an operand's value."""
 
-    REGISTER = auto()  # a byte address, or a constant where the nibble says so
+    REGISTER = auto()  # a byte address, or a constant, by the nibble
     FLOAT = auto()  # the same, the constant a float
     NUMBER = auto()  # a byte address if it is large enough for one, else a number
     CODE = auto()  # always a number
@@ -45,12 +45,12 @@ class OperandKind(Enum):
 
 
 class OperandUse(Enum):
-    """What the function does to the operand."""
+    """The use of an operand by the function."""
 
     READ = auto()
     WRITE = auto()
     CHANGE = auto()  # reads and writes
-    READ_ON = auto()  # reads it and the registers behind it, as many as something else says
+    READ_ON = auto()  # reads it and a number of registers after it
     WRITE_ON = auto()
     CHANGE_ON = auto()
     NOTHING = auto()
@@ -67,20 +67,20 @@ class OperandUse(Enum):
 
     @property
     def goes_on(self) -> bool:
-        """True if registers behind the named one belong to it, and it is not known how many."""
+        """True if an unknown number of registers after the named one belong to it."""
         return self in {OperandUse.READ_ON, OperandUse.WRITE_ON, OperandUse.CHANGE_ON}
 
 
 @dataclass(frozen=True, slots=True)
 class OperandForm:
-    """One operand of a form: a row's statement of what stands in its place.
+    """The form of one operand.
 
     Attributes:
-        kind: what its value is.
-        use: what the function does to it.
-        constant: the bit of the low nibble that makes it a constant; 0 where none does.
-        words: how many words of code it takes, 1 or 2.
-        registers: how many registers it stands for, 1, 2 or 4.
+        kind: of its value.
+        use: by the function.
+        constant: the bit of the low nibble that makes it a constant; 0 if there is none.
+        words: its words of code, 1 or 2.
+        registers: its registers, 1, 2 or 4.
     """
 
     kind: OperandKind = OperandKind.REGISTER
@@ -92,15 +92,15 @@ class OperandForm:
 
 @dataclass(frozen=True, slots=True)
 class Operand:
-    """An operand as it stands in an instruction.
+    """An operand of an instruction.
 
     Attributes:
-        part: what its form says of it.
+        part: its form.
         value: its words with their bytes swapped, the first the high one.
         text: as the vendor prints it.
-        grade: how sure the text is.
-        element: the element that it names, if it is one.
-        spans: the memory that it stands for; empty where that is not known, or where it is a constant.
+        grade: the certainty of the text.
+        element: its element; None if it has none.
+        spans: its memory; empty if not known, or for a constant.
     """
 
     part: OperandForm
@@ -146,10 +146,10 @@ def words_of(value: int, count: int) -> tuple[int, ...]:
 
 
 def operand(part: OperandForm, value: int, nibble: int) -> Operand:
-    """Name an operand.
+    """The operand with its text.
 
     Args:
-        part: what its form says of it.
+        part: its form.
         value: its words with their bytes swapped.
         nibble: the low nibble of the function's word.
     """
@@ -168,14 +168,14 @@ def operand(part: OperandForm, value: int, nibble: int) -> Operand:
 
 
 def number(value: int, bits: int) -> str:
-    """A constant as it is shown: decimal, and hex where the top bit is set, as its sign is not known."""
+    """A constant as text: decimal, or hex if the top bit is set, because its sign is not known."""
     return f"{value:0{bits // 4}X}H" if value >> bits - 1 else str(value)
 
 
 def characters(value: int) -> str:
-    """Two characters packed as the first times 128 plus the second; a NUL is left out.
+    """Two characters, packed as the first times 128 plus the second, without NUL.
 
-    What is no printable ASCII character is shown as its code in hex.
+    Characters that are not printable ASCII are shown as their code in hex.
     """
     return "".join(character(code) for code in (value >> 7, value & 0x7F) if code)
 
@@ -214,7 +214,7 @@ def _named(part: OperandForm, value: int, name: Name, spans: tuple[Span, ...]) -
 
 
 def _float(value: int) -> str:
-    """A float of 32 bits in the fewest digits that stand for it."""
+    """A float of 32 bits, with the fewest digits that represent it."""
     raw = value.to_bytes(4, "big")
     (exact,) = struct.unpack(">f", raw)
     if not isfinite(exact):

@@ -1,4 +1,4 @@
-"""A function's text: its form's, with operands and what the low nibble says filled in."""
+"""The text of a function: that of its form, with its operands and the meaning of the low nibble."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ def print_function(form: Form, free: int, operands: Sequence[Operand]) -> str:
 
     Args:
         form: its row.
-        free: what stands in the free bits of its first word.
-        operands: its operands, named.
+        free: the free bits of its first word.
+        operands: its operands, with their text.
     """
     return " ".join(text for text, _ in function_words(form, free, operands))
 
@@ -32,12 +32,12 @@ def print_function(form: Form, free: int, operands: Sequence[Operand]) -> str:
 def function_words(
     form: Form, free: int, operands: Sequence[Operand]
 ) -> Iterator[tuple[str, tuple[Operand, ...]]]:
-    """The same, word by word, each with the operands that stand in it.
+    """The same, word by word, each with the operands in it.
 
     Args:
         form: its row.
-        free: what stands in the free bits of its first word.
-        operands: its operands, named.
+        free: the free bits of its first word.
+        operands: its operands, with their text.
     """
     nibble = (form.fixed[0] | free) & 0x0F if form.shape is Shape.FUNCTION else 0
     pulse = f"{nibble:X}" in form.pulse
@@ -57,7 +57,7 @@ def function_words(
 
 
 def _brackets(operands: Sequence[Operand], *, pulse: bool) -> str:
-    """Of SET and RST. A word of discretes (WY0) stands without them in the notes, T and C with them (A)."""
+    """Brackets of SET and RST. In the notes, a word of discretes (WY0) has none, T and C have them (A)."""
     if operands and operands[0].text.startswith("W"):
         return ""
     return "(P)" if pulse else "( )"

@@ -1,11 +1,11 @@
-"""Every instruction that is known, a row each, with how sure it is.
+"""All known instructions, one row each, with their certainty.
 
-How a row is read: ``AC``, the high byte of the function's word; how it is printed; its operands in the order
-of their words, with what is done to them; the grade (see ``grades``). Behind it the evidence, where it is not
-a printout of the vendor's program.
+A row has: ``AC``, the high byte of the function's word; the text; the operands in the order of their words,
+with their use; the grade (see ``grades``). A comment has the evidence, if it is not a printout of the
+vendor's software.
 
-Where only the operands' number is known their names are left out. What is not in the table is not guessed
-at: it decodes to itself.
+If only the number of operands is known, they have no names. Words that are not in the table are kept as
+words.
 """
 
 from __future__ import annotations
@@ -304,4 +304,4 @@ def _two_words(second: int, shown: str, *parts: OperandForm, grade: Grade, begin
 
 
 FORMS: Final = (*_contacts(), *_MARKS, *_FUNCTIONS, RESET, RESET_REGISTER, LABEL, *_extended())
-"""All of them. No word is the head of two."""
+"""All forms. No word is the head of two."""

@@ -62,20 +62,20 @@ PRINTED_NETWORKS = {
 """Of real programs, or of the kinds of networks that they have, and the circuits that they are."""
 
 REASONS = {
-    "AND X0, OUT Y0": "nothing stands before AND X0: a network begins with ORG",
-    "LD X1, OUT Y0": "nothing stands before LD X1: a network begins with ORG",
-    "ORG X0, ANDLD, OUT Y0": "ANDLD joins two blocks, and there is one",
-    "ORG X0, LD X1, OUT Y0": "before OUT Y0 1 block is left that nothing takes up",
-    "ORG X0, LD X1, LD X4, FUN 68 RTS": "before FUN 68 RTS 3 blocks are left that nothing takes up",
-    "ORG X0, LD X1": "at its end 1 block is left that nothing takes up",
-    "ORG X0, OUT Y0, OR Y0": "OR Y0 stands behind a coil or function",
-    "ORG X0, LD TR 0, OUT Y0": "nothing has been stored for LD TR 0",
-    "ORG X0, FO 0, OUT Y0": "FO 0 does not stand behind its function",
+    "AND X0, OUT Y0": "there is no contact before AND X0: a network begins with ORG",
+    "LD X1, OUT Y0": "there is no contact before LD X1: a network begins with ORG",
+    "ORG X0, ANDLD, OUT Y0": "ANDLD joins two blocks, but there is only one",
+    "ORG X0, LD X1, OUT Y0": "before OUT Y0 1 block is not connected",
+    "ORG X0, LD X1, LD X4, FUN 68 RTS": "before FUN 68 RTS 3 blocks are not connected",
+    "ORG X0, LD X1": "at its end 1 block is not connected",
+    "ORG X0, OUT Y0, OR Y0": "OR Y0 is after a coil or function",
+    "ORG X0, LD TR 0, OUT Y0": "there is no OUT TR before LD TR 0",
+    "ORG X0, FO 0, OUT Y0": "FO 0 is not after its function",
     "ORG X0, C0 100": "C0 100 has 2 inputs, and 1 line leads to it",
     "ORG X0, LD X1, FUN 15 (+1) C0": "FUN 15 (+1) C0 has 1 input, and 2 lines lead to it",
-    "ORG X0, FUN 15 (+1) C0, OUT Y0": "what FUN 15 (+1) C0 hands on to OUT Y0 is not known",
-    "ORG X0, FUN 08 MOV S:0 D:R1501, OUT Y0, FO 0": "FO 0 does not stand behind its function",
-    "ORG X0, FUN 15 (+1) C0, FO 0, OR Y0": "OR Y0 stands behind an output of a function",
+    "ORG X0, FUN 15 (+1) C0, OUT Y0": "the state of the line from FUN 15 (+1) C0 to OUT Y0 is not known",
+    "ORG X0, FUN 08 MOV S:0 D:R1501, OUT Y0, FO 0": "FO 0 is not after its function",
+    "ORG X0, FUN 15 (+1) C0, FO 0, OR Y0": "OR Y0 is after an output of a function",
 }
 
 
@@ -104,13 +104,13 @@ def test_what_is_no_circuit_says_why(text: str) -> None:
 @pytest.mark.parametrize(
     ("words", "reason", "number"),
     [
-        ((0x0040, 0x1AF5), "?? 1AF5 is not understood, nor how many words belong to it", 1),
-        ((0x0040, 0x00C1, 0xE6CF), "what OUT SHORT does is not known", 2),
-        ((0x0040, 0x0084, 0x00C1), "what AND TR 0 does is not known", 1),
-        ((0x0040, 0x00E0, 0xE68F), "what AND TU SHORT does is not known", 1),
+        ((0x0040, 0x1AF5), "?? 1AF5 is not known, and its number of words is not known either", 1),
+        ((0x0040, 0x00C1, 0xE6CF), "the function of OUT SHORT is not known", 2),
+        ((0x0040, 0x0084, 0x00C1), "the function of AND TR 0 is not known", 1),
+        ((0x0040, 0x00E0, 0xE68F), "the function of AND TU SHORT is not known", 1),
         (
             (0x0040, *[0x3FF4] * 30),
-            f"??{' 3FF4' * 7}... is not understood, nor how many words belong to it",
+            f"??{' 3FF4' * 7}... is not known, and its number of words is not known either",
             1,
         ),
     ],

@@ -58,7 +58,8 @@ def test_a_listing_has_each_network_drawn_with_its_instructions_to_open() -> Non
     assert summaries == [f"Instructions of N{number:04}" for number in (0, 1, 2, 3, 4, 5)]
     assert "An empty network." in page.text
     assert (
-        "Not drawn: ?? 3FF4 9041 is not understood, nor how many words belong to it (instruction" in page.text
+        "Not drawn: ?? 3FF4 9041 is not known, and its number of words is not known either (instruction"
+        in page.text
     )
 
 

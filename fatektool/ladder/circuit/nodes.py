@@ -1,23 +1,23 @@
-"""What a circuit is made of.
+"""The parts of a circuit.
 
 ::
 
     Circuit   lines, in the order of their instructions
-    Line      parts from left to right: what conducts, and what hangs on the line where it has come to
-    Series    one behind the other        Parallel   one beside the other
-    Block     a part that was loaded for itself, with the ANDLD or ORLD that joins it to what is before
+    Line      parts from left to right: conducting parts, and outputs connected to the line
+    Series    parts in series             Parallel   parts in parallel
+    Block     a part with its own LD, and the ANDLD or ORLD that joins it with the part before it
     Leaf      one instruction: a contact, a comparison, a wire, a coil ..
-    Box       a function: the lines that enter it beside the one on which it hangs, and those that leave it
+    Box       a function: its further input lines, and its output lines
 
 ``ORG X0, OR Y4, AND NOT M421, OUT Y4`` is ``Line(Parallel(X0, Y4), M421, Y4)``: the coil is a part of the
-line, and what stands behind it goes on from where it hangs.
+line, and the parts after it continue from the same point.
 
-A line carries from left to right. One that begins with a contact begins at the rail, one with ``LD TR n``
-where ``OUT TR n`` stands in another line, one with ``FO n`` at an output of its box, one with STP or FROM at
-a step. Within a block ``LD TR n`` is a contact: it conducts what was stored.
+A line conducts from left to right. A line with a contact at its beginning begins at the rail, one with ``LD
+TR n`` at ``OUT TR n`` in another line, one with ``FO n`` at an output of its box, one with STP or FROM at a
+step. In a block, ``LD TR n`` is a contact with the stored state.
 
-Every leaf has the number of its instruction, which nothing else in the program has. What is known of an
-instruction (the state of its element, a change) is kept beside the circuit under that number.
+Every leaf has the number of its instruction, which is unique in the program. Data of an instruction (the
+state of its element, a change) are stored separately, by that number.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ class Leaf:
     """One instruction.
 
     Attributes:
-        number: the instruction's, through the whole program.
-        instruction: what it is.
+        number: of the instruction, through the whole program.
+        instruction: the instruction.
     """
 
     number: int
@@ -48,7 +48,7 @@ class Leaf:
 
     @property
     def role(self) -> Role:
-        """What it does."""
+        """Its role in the circuit."""
         return role_of(self.instruction)
 
     @property
@@ -74,7 +74,7 @@ class Leaf:
 
     @property
     def element(self) -> str | None:
-        """The element of a contact or coil; None for what has none."""
+        """The element of a contact or coil; None if it has none."""
         bit = self.instruction.bit
         name = None if bit is None else bit_name(bit)
         return None if name is None else name.element
@@ -100,24 +100,24 @@ class Leaf:
 
 @dataclass(frozen=True, slots=True)
 class Series:
-    """Parts one behind the other: it conducts where all do. Behind the first stand leaves and blocks."""
+    """Parts in series: it conducts if all do. After the first there are only leaves and blocks."""
 
     parts: tuple[Node, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Parallel:
-    """Branches one beside the other: it conducts where one does. Behind the first stand leaves and blocks."""
+    """Branches in parallel: it conducts if one does. After the first there are only leaves and blocks."""
 
     branches: tuple[Node, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """A part that is worked out for itself before it is joined to what is before it.
+    """A part with its own LD, which is joined with the part before it.
 
     Attributes:
-        body: it.
+        body: the part.
         join: the ANDLD or ORLD.
     """
 
@@ -131,8 +131,8 @@ class Box:
 
     Attributes:
         function: its instruction.
-        inputs: the lines that enter it below the one on which it hangs.
-        outputs: the lines that begin at its outputs, and those that branch off from these.
+        inputs: its input lines after the first.
+        outputs: the lines from its outputs, and their branches.
     """
 
     function: Leaf
@@ -146,13 +146,13 @@ Part: TypeAlias = Node | Box
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A line, from where it begins to where it ends."""
+    """A line, from its beginning to its end."""
 
     parts: tuple[Part, ...]
 
     @property
     def head(self) -> Leaf | None:
-        """Its first instruction, if that stands alone and not in a parallel; else None."""
+        """Its first instruction, if it is not in a parallel part; else None."""
         first = self.parts[0]
         if isinstance(first, Box):
             return first.function

@@ -1,11 +1,11 @@
-"""The inputs and outputs of functions: how many, and what the vendor calls them.
+"""The inputs and outputs of functions: their number and the vendor's names.
 
-Of a function that is not here the code tells how many lines enter it, and FO n which outputs are used. The
-names are from:
+For a function that is not here, the code shows the number of its input lines, and FO n the outputs in use.
+The names are from:
 
-    print    a ladder that the vendor's program printed
+    print    a ladder printed by the vendor's software
     manual   the FBs and FB manuals, The Format of Function Instructions, and chapter 13
-    field    published notes of programs in which a single thing was changed
+    field    published notes of programs in which only one thing was changed
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Pins:
-    """The names of a function's inputs, from the first line that enters it, and of its outputs FO 0 on."""
+    """The names of a function's inputs, from the first line on, and of its outputs from FO 0 on."""
 
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
@@ -44,5 +44,5 @@ _PINS: Final = {
 
 
 def pins_of(form: Form) -> Pins | None:
-    """A function's inputs and outputs; None where they are not known."""
+    """A function's inputs and outputs; None if not known."""
     return _PINS.get(form.fixed[0]) if form.fixed else None

@@ -1,14 +1,14 @@
-"""A network's instructions -> its circuit, by the stack of blocks on which they work.
+"""A network's instructions -> its circuit, with the stack of blocks.
 
 ::
 
-    ORG LD LD TR FO    begin a block on top of the stack         AND OR TU    go on with the one on top
+    ORG LD LD TR FO    begin a block on top of the stack         AND OR TU    continue the one on top
     ANDLD ORLD         join the two on top
-    OUT SET ..         hang on the line, which is then done: the next block begins another line
-    a function         takes all that stands on the stack, a line for each of its inputs
+    OUT SET ..         are on the line, which is then complete: the next block begins another line
+    a function         uses all blocks of the stack, one line for each of its inputs
 
-Total: whatever the instructions are, a circuit comes out, or the reason why there is none. What breaks a rule
-is no circuit; docs/programs.md has the rules and from where each is known.
+Total: any instructions result in a circuit, or in the reason why there is none. If a rule is broken, there is
+no circuit; docs/programs.md has the rules and their sources.
 """
 
 from __future__ import annotations
@@ -27,18 +27,18 @@ if TYPE_CHECKING:
     from fatektool.ladder.networks import Network
 
 DEEPEST: Final = 100
-"""So many levels of blocks a circuit has, and no more; the vendor's program has networks of 16 rows."""
+"""The most levels of blocks in a circuit; the vendor's software has networks of 16 rows."""
 LARGEST: Final = 500
-"""So many instructions; the vendor's program has networks of 16 rows and 22 columns."""
+"""The most instructions; the vendor's software has networks of 16 rows and 22 columns."""
 
 
 @dataclass(frozen=True, slots=True)
 class NoCircuit:
-    """Why a network cannot be drawn.
+    """The reason why a network cannot be drawn.
 
     Attributes:
-        reason: in words, a sentence without its full stop.
-        number: the instruction at which that shows.
+        reason: a sentence without a full stop.
+        number: the instruction with the error.
     """
 
     reason: str
@@ -46,21 +46,21 @@ class NoCircuit:
 
 
 class _Unclear(Exception):
-    """The instructions make no circuit."""
+    """The instructions are not a circuit."""
 
 
 @dataclass(slots=True)
 class _Draft:
-    """A block or line in the making.
+    """An incomplete block or line.
 
     Attributes:
-        parts: what it has so far.
-        lines: where it goes as a line, once it is done.
-        depth: levels of what is in it.
+        parts: the parts so far.
+        lines: the list for the complete line.
+        depth: the levels in it.
         hung: it has a coil or box.
-        done: nothing is missing: what comes next may begin another line.
-        behind: the function that the line ends with, if it is not known what it carries behind that.
-        level: in how many boxes' outputs it is.
+        done: complete: the next instruction may begin another line.
+        behind: the function at the end of the line, if the state of the line after it is not known.
+        level: the number of nested boxes.
     """
 
     parts: list[_DraftPart]
@@ -72,12 +72,12 @@ class _Draft:
     level: int = 0
 
     def node(self) -> Node:
-        """What it has so far, as one."""
+        """The parts so far, as one."""
         nodes = [part for part in self.parts if not isinstance(part, _DraftBox)]
         return nodes[0] if len(nodes) == 1 else Series(tuple(nodes))
 
     def line(self) -> Line:
-        """It as a line."""
+        """The complete line."""
         return Line(tuple(part.box() if isinstance(part, _DraftBox) else part for part in self.parts))
 
 
@@ -100,7 +100,7 @@ _DraftPart: TypeAlias = Node | _DraftBox
 
 
 def circuit_of(network: Network) -> Circuit | NoCircuit:
-    """The circuit that a network is; or why it is none."""
+    """The circuit of a network, or the reason why there is none."""
     reader = _Reader()
     number = network.first
     if len(network.instructions) > LARGEST:
@@ -114,7 +114,7 @@ def circuit_of(network: Network) -> Circuit | NoCircuit:
 
 
 class _Reader:
-    """The stack, and the lines that are done."""
+    """The stack, and the complete lines."""
 
     def __init__(self) -> None:
         self._stack: list[_Draft] = []
@@ -145,14 +145,14 @@ class _Reader:
         take = self._take.get(leaf.role)
         if take is None:
             if leaf.role is Role.UNKNOWN:
-                raise _Unclear(f"{_text(leaf)} is not understood, nor how many words belong to it")
-            raise _Unclear(f"what {_text(leaf)} does is not known")
+                raise _Unclear(f"{_text(leaf)} is not known, and its number of words is not known either")
+            raise _Unclear(f"the function of {_text(leaf)} is not known")
         take(leaf)
 
     def end(self) -> Circuit:
-        """All has been taken."""
+        """The circuit, after the last instruction."""
         if len(self._stack) > 1:
-            raise _Unclear(f"at its end {_blocks(len(self._stack) - 1)} left that nothing takes up")
+            raise _Unclear(f"at its end {_blocks(len(self._stack) - 1)} not connected")
         if self._stack:
             self._flush()
         return Circuit(tuple(draft.line() for draft in self._lines))
@@ -167,7 +167,7 @@ class _Reader:
         self._stack.append(_Draft([leaf], self._lines if lines is None else lines))
 
     def _flush(self) -> None:
-        """The line on the stack goes where lines go."""
+        """Move the line from the stack to the complete lines."""
         draft = self._stack.pop()
         draft.lines.append(draft)
 
@@ -176,7 +176,7 @@ class _Reader:
             raise _nothing_before(leaf)
         top = self._stack[-1]
         if top.behind is not None:
-            raise _Unclear(f"what {_text(top.behind)} hands on to {_text(leaf)} is not known")
+            raise _Unclear(f"the state of the line from {_text(top.behind)} to {_text(leaf)} is not known")
         if self._box is not None and self._stack[0].lines is not self._box.outputs:
             self._box = None  # the line goes on behind it
         return top
@@ -191,11 +191,11 @@ class _Reader:
         self._parallel(top, leaf, leaf, 1)
 
     def _parallel(self, draft: _Draft, branch: Node, join: Leaf, depth: int) -> None:
-        """Put a branch beside all that a block has so far."""
+        """Connect a branch in parallel to the whole block so far."""
         head = draft.parts[0]
         if draft.hung or (isinstance(head, Leaf) and head.role is Role.OUTPUT):
             before = "an output of a function" if not draft.hung else "a coil or function"
-            raise _Unclear(f"{_text(join)} stands behind {before}")
+            raise _Unclear(f"{_text(join)} is after {before}")
         node = draft.node()
         if isinstance(node, Parallel):
             draft.parts = [Parallel((*node.branches, branch))]
@@ -213,10 +213,10 @@ class _Reader:
     def _blocks(self, join: Leaf) -> tuple[_Draft, Block]:
         """The two on top of the stack, the second as a block."""
         if len(self._stack) < 2:
-            raise _Unclear(f"{_text(join)} joins two blocks, and there is one")
+            raise _Unclear(f"{_text(join)} joins two blocks, but there is only one")
         last = self._stack.pop()
         if last.hung:
-            raise _Unclear(f"{_text(join)} stands behind a coil or function")
+            raise _Unclear(f"{_text(join)} is after a coil or function")
         return self._stack[-1], Block(last.node(), join)
 
     def _and_block(self, join: Leaf) -> None:
@@ -238,23 +238,23 @@ class _Reader:
     def _recall(self, leaf: Leaf) -> None:
         stored = self._stores.get(leaf.store)
         if stored is None:
-            raise _Unclear(f"nothing has been stored for {_text(leaf)}")
+            raise _Unclear(f"there is no OUT TR before {_text(leaf)}")
         inside = self._box is not None and stored.lines is self._box.outputs
         self._begin(leaf, stored.lines if inside else None)
 
     def _output(self, leaf: Leaf) -> None:
         if self._box is None or not (self._stack and self._stack[-1].done):
-            raise _Unclear(f"{_text(leaf)} does not stand behind its function")
+            raise _Unclear(f"{_text(leaf)} is not after its function")
         level = self._box.level + 1
         self._begin(leaf, self._box.outputs)
         self._stack[-1].level = level
         if level > DEEPEST:
-            raise _Unclear(f"more than {DEEPEST} functions hang on one another")
+            raise _Unclear(f"more than {DEEPEST} functions are connected in sequence")
 
     def _coil(self, leaf: Leaf) -> None:
         top = self._top(leaf)
         if len(self._stack) > 1:
-            raise _Unclear(f"before {_text(leaf)} {_blocks(len(self._stack) - 1)} left that nothing takes up")
+            raise _Unclear(f"before {_text(leaf)} {_blocks(len(self._stack) - 1)} not connected")
         top.parts.append(leaf)
         top.hung = top.done = True
 
@@ -276,14 +276,14 @@ class _Reader:
 
     def _alone(self, leaf: Leaf) -> None:
         if self._stack and not self._stack[-1].done:
-            raise _Unclear(f"before {_text(leaf)} {_blocks(len(self._stack))} left that nothing takes up")
+            raise _Unclear(f"before {_text(leaf)} {_blocks(len(self._stack))} not connected")
         if self._stack:
             self._flush()
         self._box = None
         self._lines.append(_Draft([_DraftBox(leaf, [])], self._lines, hung=True, done=True))
 
     def _end(self, leaf: Leaf) -> None:
-        """The end of the program: where a line leads to it, if that carries."""
+        """The end of the program: conditional, if a line leads to it."""
         (self._function if self._stack and not self._stack[-1].done else self._alone)(leaf)
 
     def _mark(self, leaf: Leaf) -> None:
@@ -296,11 +296,11 @@ class _Reader:
 
 
 def _nothing_before(leaf: Leaf) -> _Unclear:
-    return _Unclear(f"nothing stands before {_text(leaf)}: a network begins with ORG")
+    return _Unclear(f"there is no contact before {_text(leaf)}: a network begins with ORG")
 
 
 def _text(leaf: Leaf) -> str:
-    """An instruction as it is named in a reason; of a long one the beginning."""
+    """An instruction for a reason; if it is long, its beginning."""
     text = leaf.instruction.text.removeprefix("~")
     return text if len(text) <= 40 else f"{text[:37]}..."
 

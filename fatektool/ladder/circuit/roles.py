@@ -1,6 +1,6 @@
-"""What an instruction does in a circuit, and how a contact is written at each place of one.
+"""The roles of instructions in a circuit, and the forms of a contact at each place.
 
-A contact or comparison has one of four forms, by where it stands; all else of it is the same::
+A contact or comparison has one of four forms, by its place; the rest is the same::
 
     ORG X0    LD X0    AND X0    OR X0            ORGF 171 > ..    LDF ..    ANDF ..    ORF ..
 """
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Role(Enum):
-    """What an instruction does."""
+    """The role of an instruction."""
 
     ORG = auto()  # begins a network with a contact
     LD = auto()  # begins a block with a contact
@@ -28,18 +28,18 @@ class Role(Enum):
     OR = auto()  # a contact in parallel
     AND_BLOCK = auto()  # ANDLD: the last block in series with the one before
     OR_BLOCK = auto()  # ORLD: in parallel
-    LINE = auto()  # TU, TD, INV of what the line carries so far
+    LINE = auto()  # TU, TD, INV of the state of the line so far
     STORE = auto()  # OUT TR n
     RECALL = auto()  # LD TR n
     OUTPUT = auto()  # FO n: an output of the function before begins a line
     STEP = auto()  # STP, FROM: a step begins a line
-    COIL = auto()  # takes what the line carries, and leaves it there
-    FUNCTION = auto()  # takes one line or several
+    COIL = auto()  # has the state of the line, which continues
+    FUNCTION = auto()  # has one input line or several
     ALONE = auto()  # no line leads to it
     END = auto()  # alone, or at the end of a line
-    MARK = auto()  # drawing that the vendor's program does not print
+    MARK = auto()  # drawing that the vendor's software does not print
     UNKNOWN = auto()
-    ODD = auto()  # words that decode, and that no program has been seen to have
+    ODD = auto()  # words that can be decoded, but occur in no known program
 
 
 PLACES: Final = (Role.ORG, Role.LD, Role.AND, Role.OR)
@@ -57,7 +57,7 @@ _FUNCTIONS: Final = {
 
 
 def role_of(instruction: Instruction) -> Role:
-    """What an instruction does in a circuit."""
+    """The role of an instruction in a circuit."""
     form = instruction.form
     bit = instruction.bit
     if bit is not None:
@@ -76,10 +76,10 @@ def role_of(instruction: Instruction) -> Role:
 
 
 def placed(instruction: Instruction, place: Role) -> Instruction:
-    """A contact or comparison as it is written at another place.
+    """A contact or comparison in the form for another place.
 
     Args:
-        instruction: it.
+        instruction: the contact or comparison.
         place: one of ``PLACES``.
     """
     form = _AT[_WHAT[instruction.form], place]
@@ -97,7 +97,7 @@ def _contact_role(form: Form, bit: int) -> Role:
 
 
 def _by_place() -> Mapping[Form, tuple[str, Role]]:
-    """Each form of a contact or comparison: what it is without its place, and the place."""
+    """Each form of a contact or comparison: its name without the place, and the place."""
     found = {}
     for form in FORMS:
         place, _, what = form.text.partition(" ")

@@ -1,4 +1,4 @@
-"""A circuit -> its instructions: where a part stands says how it is written."""
+"""A circuit -> its instructions: the place of a part decides its form."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 
 
 def instructions_of(circuit: Circuit) -> tuple[Instruction, ...]:
-    """The instructions that make a circuit.
+    """The instructions of a circuit.
 
-    A contact's own form does not matter: it is ORG at the beginning of the network, LD at that of a line or
+    The form of a contact follows from its place: ORG at the beginning of the network, LD at that of a line or
     block, AND in series, OR as a branch.
     """
     written = [each for line in circuit.lines for each in _line(line)]

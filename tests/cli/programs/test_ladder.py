@@ -45,7 +45,7 @@ N0003
 │         MOTOR
 
 N0004
-not drawn: ?? 3FF4 9041 is not understood, nor how many words belong to it (instruction 0014)
+not drawn: ?? 3FF4 9041 is not known, and its number of words is not known either (instruction 0014)
   0013  ORG X2
   0014  ?? 3FF4 9041
 

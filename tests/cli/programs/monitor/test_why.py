@@ -131,7 +131,7 @@ def test_a_network_that_is_no_circuit(cli: Cli) -> None:
         assert cli("backup", "odd.json", "-p", door.target).code == 0
         done = cli("monitor", "odd.json", "--why", "Y0", "-p", door.target)
         (line,) = [line for line in done.out.splitlines() if line.startswith("  N0000")]
-        reason = "what FUN 15 (+1) C0 hands on to OUT Y0 is not known"
+        reason = "the state of the line from FUN 15 (+1) C0 to OUT Y0 is not known"
         assert line == f"  N0000  OUT Y0: what reaches it is not known: {reason}"
 
 
