@@ -238,7 +238,9 @@ class PortLock:
         return True
 
     def _open(self) -> int:
-        flags = os.O_RDWR | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_CLOEXEC", 0)
+        flags = os.O_RDWR
+        for name in ("O_NOFOLLOW", "O_CLOEXEC", "O_BINARY"):
+            flags |= getattr(os, name, 0)
         try:
             try:
                 return os.open(self.path, flags)

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import contextlib
-import fcntl
 import os
 import re
 import struct
-import termios
 from typing import TYPE_CHECKING
+
+import pytest
 
 from tests.cli.running import environment
 from tests.forks.command import Forked
+
+if os.name != "posix":
+    pytest.skip("POSIX alone: pseudo terminals", allow_module_level=True)
+
+import fcntl
+import termios
 
 if TYPE_CHECKING:
     from types import TracebackType

@@ -15,6 +15,7 @@ from fatektool.protocol.elements import Element
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.listen.servers import Server, running
 from tests.guard import GUARD_S
+from tests.platforms import not_in_wine
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -144,6 +145,7 @@ def test_a_new_sim_file_has_the_station_that_was_asked_for(tmp_path: Path) -> No
         plc.brief_status()
 
 
+@not_in_wine("symbolic links are not followed")
 def test_two_at_once_to_one_sim_file(tmp_path: Path) -> None:
     file = tmp_path / "plc.json"
     link = tmp_path / "link.json"

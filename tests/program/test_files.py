@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 import os
-import resource
 import shutil
 import subprocess
 import sys
@@ -17,6 +16,7 @@ import pytest
 
 from fatektool.errors import DataError, FatektoolError, FileWarning, UsageError
 from fatektool.files.atomic import read_bounded, require_folder, require_place, write_new, write_whole
+from tests.platforms import posix
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -327,6 +327,7 @@ def test_a_disk_that_is_really_full(small_disk: Path) -> None:
     assert names(small_disk) == ["file"]
 
 
+@posix("limits of a process")
 def test_a_limit_of_file_size(tmp_path: Path) -> None:
     """Another way for a disk to be too small, which every user can try."""
     program = (
@@ -336,7 +337,7 @@ def test_a_limit_of_file_size(tmp_path: Path) -> None:
     )
     path = tmp_path / "file"
     path.write_bytes(OLD)
-    limited = f"import resource; resource.setrlimit({resource.RLIMIT_FSIZE}, (8192, 8192))\n{program}"
+    limited = f"import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (8192, 8192))\n{program}"
     done = subprocess.run(
         [sys.executable, "-c", limited, str(path)], capture_output=True, text=True, check=True
     )

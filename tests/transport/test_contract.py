@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from fatektool.errors import TransportClosed, TransportTimeout
+from fatektool.transport.udp import UdpTransport
+from tests.platforms import under_wine
 from tests.transport.media import MEDIA, PATIENCE_S, ask_twice
 
 if TYPE_CHECKING:
@@ -110,6 +112,8 @@ def test_a_context_closes(medium: Medium) -> None:
 
 
 def test_the_other_side_goes(medium: Medium) -> None:
+    if under_wine() and isinstance(medium.transport, UdpTransport):
+        pytest.skip("not in Wine: an unreachable UDP port is not reported")
     medium.hang_up()
     name = medium.transport.name
     with pytest.raises(TransportClosed) as caught:

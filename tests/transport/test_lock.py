@@ -355,6 +355,7 @@ def test_where_locks_lie(lock_folder: Path, monkeypatch: pytest.MonkeyPatch, tmp
     assert folder() == str(lock_folder)
     monkeypatch.setenv("FATEKTOOL_LOCK_DIR", "")
     monkeypatch.setattr(lock_module, "_SHARED", ())
+    monkeypatch.setattr(lock_module, "_WINDOWS", False)
     monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path / "temporary"))
     assert folder() == str(tmp_path / "temporary")
 

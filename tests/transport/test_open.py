@@ -16,6 +16,7 @@ from fatektool.transport.lock import PortLock
 from fatektool.transport.open import open_transport
 from fatektool.transport.sockets import resolve
 from fatektool.transport.target import Target
+from tests.platforms import not_in_wine
 from tests.transport.media import LINE, listening, needs_pty
 
 if TYPE_CHECKING:
@@ -165,6 +166,7 @@ def test_a_simulated_plc_is_no_line() -> None:
         opened("sim:", stack)
 
 
+@not_in_wine("its network interfaces have no names")
 def test_ipv4_goes_first_and_a_scope_is_kept() -> None:
     assert resolve("localhost", 500) == ("127.0.0.1", 500)
     if not hasattr(socket, "if_nametoindex") or not socket.has_ipv6:

@@ -35,4 +35,5 @@ def bar(eighths: int, encoding: str | None = None) -> str:
 
 
 def _letters(encoding: str | None) -> Letters:
-    return Letters(encoding or getattr(sys.stdout, "encoding", None) or "ascii")
+    out = getattr(sys.stdout, "rich_proxied_file", sys.stdout)  # rich's has no encoding
+    return Letters(encoding or out.encoding or "ascii")

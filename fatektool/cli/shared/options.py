@@ -50,7 +50,10 @@ class FilePath(click.Path):
         """Make one of what was given."""
         from pathlib import Path
 
-        return Path(standard(os.fspath(value)))
+        name = standard(os.fspath(value))
+        if "\0" in name:
+            self.fail(f"{name!r} is not a file name")
+        return Path(name)
 
 
 PATH = FilePath()

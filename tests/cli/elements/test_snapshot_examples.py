@@ -16,6 +16,7 @@ import pytest
 
 from fatektool.jobs.snapshots.spec import parse_spec
 from tests.forks.shell import path as shell_path
+from tests.platforms import posix
 from tests.root import EXAMPLES, ROOT
 
 if TYPE_CHECKING:
@@ -92,6 +93,7 @@ def unit(name: str) -> dict[str, dict[str, str]]:
     return {section: dict(parser[section]) for section in parser.sections()}
 
 
+@posix("systemd")
 def test_systemd_service(plant: Plant, place: Path) -> None:
     service = unit("fatektool-snapshot.service")["Service"]
     assert service["Type"] == "oneshot"

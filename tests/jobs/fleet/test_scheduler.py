@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import threading
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,7 @@ from fatektool.transport.base import Transport
 from fatektool.transport.limit import Limit, LimitedTransport
 from tests.guard import GUARD_S
 from tests.night import examples
+from tests.platforms import posix
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -183,7 +185,7 @@ def test_looking_on() -> None:
         ("tcp://gate", "tcp://10.0.0.9", True),  # its address
         ("sim:", "sim:", False),
         ("sim:a.state", "sim:./a.state", True),
-        ("/dev/ttyUSB0", "/dev/../dev/ttyUSB0", True),
+        ("/dev/ttyUSB0", "/dev/../dev/ttyUSB0", os.name == "posix"),
         ("/dev/ttyUSB0", "/dev/ttyUSB1", False),
         ("rfc2217://g:4001", "RFC2217://g:4001", True),
     ],
@@ -194,6 +196,7 @@ def test_which_plcs_share_a_line(one: str, other: str, *, same: bool) -> None:
     assert (a == b) is same
 
 
+@posix("devices are files")
 def test_two_names_of_one_device(tmp_path: Path) -> None:
     (tmp_path / "by-id").symlink_to("/dev/null")
     by_id = PlcAddress(str(tmp_path / "by-id"))

@@ -16,6 +16,7 @@ from fatektool.jobs.programs.backup import backup
 from fatektool.jobs.programs.known import KnownPages, after_an_equal, apart, first_known, neighbours
 from fatektool.jobs.programs.restore import RestoreOptions, plan_restore
 from fatektool.program.archive import Backup, Proof
+from tests.platforms import posix
 from tests.program.samples import backup as backup_of
 from tests.program.samples import changed, program
 from tests.rigs import DETAILED_STATUS, READ_PAGE, Bench, Seen
@@ -252,6 +253,7 @@ def test_a_restore_reads_the_others_twice() -> None:
     assert requests(bench)[READ_PAGE] == 9
 
 
+@posix("named pipes")
 def test_a_pipe_is_no_file_to_compare_with(tmp_path: Path) -> None:
     """``backup >(gzip > x)``: the program goes into it, and nobody writes what could be read."""
     os.mkfifo(tmp_path / "pipe")

@@ -14,6 +14,7 @@ from fatektool.errors import DataError, LineError
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.listen.servers import Server, running
 from tests.guard import GUARD_S
+from tests.platforms import not_in_wine
 from tests.simulator.listen.listeners import ANSWER, ASK, PAGE_HEX, connected, place, read, tcp
 from tests.simulator.wire import frame
 
@@ -155,6 +156,7 @@ def test_power_cut_closes_connections_and_refuses_new_ones() -> None:
             assert read(again, len(ANSWER)) == ANSWER
 
 
+@not_in_wine("two servers can share a port")
 def test_a_port_in_use_is_one_clear_line() -> None:
     with closing(Server(build_simulation())) as server:
         host, port = place(server.open_tcp())

@@ -1,0 +1,50 @@
+"""A folder with fatektool and all that it needs, for any Python from 3.11 on and any system.
+
+Only wheels without machine code are taken: one bundle serves Linux, macOS and Windows on every processor.
+"""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+ROOT = Path(__file__).parent.parent
+OLDEST = "3.11"
+ELSEWHERE = ("colorama", "typing_extensions")
+"""What the dependencies need on Windows and on the oldest Python: pip reads the markers of this system."""
+
+
+def make_bundle(folder: Path) -> None:
+    """Install into a folder, which is made.
+
+    Args:
+        folder: where; must be empty or absent.
+
+    Raises:
+        CalledProcessError: pip failed, and said why.
+        RuntimeError: a package brought machine code.
+    """
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    pip = [sys.executable, "-m", "pip", "-q", "--disable-pip-version-check"]
+    pure = ["--only-binary", ":all:", "--platform", "any", "--implementation", "py", "--abi", "none"]
+    wanted = [*project["dependencies"], *ELSEWHERE]
+    subprocess.run(
+        [*pip, "install", "--target", folder, "--python-version", OLDEST, *pure, *wanted], check=True
+    )
+    shutil.rmtree(folder / "bin")  # commands of the packages
+    subprocess.run([*pip, "install", "--target", folder, "--no-deps", ROOT], check=True)
+    for name in ["bin", *(path.relative_to(folder) for path in folder.rglob("__pycache__"))]:
+        shutil.rmtree(folder / name)
+    native = [path.name for path in folder.rglob("*") if path.suffix in {".so", ".pyd", ".dylib"}]
+    if native:
+        raise RuntimeError(f"machine code in the bundle: {', '.join(native)}")
+
+
+def version() -> str:
+    """The version of the project."""
+    found: dict[str, str] = {}
+    exec((ROOT / "fatektool" / "version.py").read_text(encoding="utf-8"), found)  # noqa: S102  # its own file
+    return found["__version__"]
