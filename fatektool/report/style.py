@@ -126,6 +126,14 @@ footer{margin-top:3rem;border-top:1px solid var(--rule);padding-top:.5rem;
 body{padding:.5rem .9rem 2rem}
 h1{font-size:1.4rem}
 svg:not(.ladder) text{font-size:14px}
+table{font-size:.8125rem}
+.scroll table{width:100%;font-size:.75rem}
+th,td,tbody th,.scroll tbody th:not(.n),.scroll .text{min-width:0;padding-right:.25rem}
+th,td,thead th{overflow-wrap:anywhere}
+tbody .n{overflow-wrap:normal}
+table code{font-size:inherit}
+td time,th time{white-space:normal}
+.hex td,.hex tbody th,.hex thead th{padding:.1rem .12rem;font-size:.75rem}
 }
 @media print{
 @page{margin:14mm}

@@ -107,6 +107,20 @@ def test_it_loads_and_shows_what_it_has(page: Page, folder: Path, name: str) -> 
     assert page.complaints == []
 
 
+CUT = """JSON.stringify([...document.querySelectorAll('table')]
+    .map(each => [each.caption && each.caption.innerText, each.getBoundingClientRect().right - innerWidth])
+    .filter(each => each[1] > 0))"""
+
+
+@pytest.mark.parametrize("name", SHOWN)
+@pytest.mark.parametrize("width", [360, 390])
+def test_no_table_is_cut_on_a_phone(page: Page, folder: Path, name: str, width: int) -> None:
+    """Only a table with a column for each element, and a ladder, may be wider than the screen."""
+    page.show(width=width)
+    page.open(folder / f"{name}.html")
+    assert [caption for caption, _ in asked(page, CUT) if caption != "All values, all rounds"] == []
+
+
 def test_the_figures_on_the_screen_are_those_of_the_document(page: Page, folder: Path) -> None:
     page.show()
     page.open(folder / "loopback.html")
