@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 _TIMED: Final = 12
 _PAUSED_S: Final = 0.1
+_LEAVE_S: Final = 0.5
 
 
 class _Stopped(Exception):
@@ -70,6 +71,7 @@ class Reading(Generic[T]):
         self._jobs: deque[Callable[[], object]] = deque()
         self._ended: deque[float] = deque(maxlen=_TIMED)
         self._done = 0
+        self._is_in_round = False
         self._thread = threading.Thread(target=self.run, name="rounds", daemon=True)
         self.last: T | None = None
         self.lost: LineError | None = None
@@ -85,8 +87,11 @@ class Reading(Generic[T]):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        """Wait for the round on its way, but not for a line that another process uses."""
         self.stop()
-        self._thread.join()
+        self._thread.join(_LEAVE_S)
+        while self._thread.is_alive() and self._is_in_round:
+            self._thread.join(_LEAVE_S)
 
     @property
     def rate(self) -> float:
@@ -152,6 +157,13 @@ class Reading(Generic[T]):
 
     def _read(self) -> T | None:
         """One round; None while there is a pause."""
+        self._is_in_round = True
+        try:
+            return self._asked_for()
+        finally:
+            self._is_in_round = False
+
+    def _asked_for(self) -> T | None:
         self._asked.clear()
         self._end_if_stopped()
         while self._jobs:
