@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import click
 
 from fatektool.cli.programs.documents import restore_document
-from fatektool.cli.programs.restore_data import data_document, data_plan_lines, data_rows
+from fatektool.cli.programs.restore_data import data_document, data_plan_lines, data_rows, data_warnings
 from fatektool.cli.shared.addressee import Addressee, ExchangeTime, Origin
 from fatektool.cli.shared.colour import joined, word
 from fatektool.cli.shared.connection_options import connection_options
@@ -101,6 +101,8 @@ def restore_command(
         for warning in plan.warnings:
             voice.warn(warning)
         origin.warn_unless_from(here, file, voice)
+        for warning in () if plan.data is None else data_warnings(plan.data):
+            voice.warn(warning)
         writing.require_answer(changes=plan.changes)
         ask = _Question(writing, plan, here, backup, pace)
         offer = ask.offer([("file", file), ("from", origin)], plc)

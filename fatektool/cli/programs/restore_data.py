@@ -38,6 +38,8 @@ def data_plan_lines(plan: DataPlan) -> Iterator[str]:
         yield f"Will be disabled and held: {', '.join(states)}."
     for change in plan.settings:
         yield f"Setting {_change(change)}"
+    if plan.wanted.running:
+        yield "The data of FILE were read in RUN: its values are not all of one moment."
     if not plan.changes:
         yield "The PLC's data are those of FILE already, as far as they are written."
     for use, elements in plan.left.items():
@@ -47,6 +49,16 @@ def data_plan_lines(plan: DataPlan) -> Iterator[str]:
         yield f"Not written, settings that changed while they were read: {named(spans_of(plan.moving))}."
     if plan.missing:
         yield f"Not written, without a value in this PLC: {named(spans_of(plan.missing))}."
+
+
+def data_warnings(plan: DataPlan) -> Iterator[str]:
+    """What may move something as soon as it is written."""
+    outputs = [str(element) for element, on in plan.hold.items() if on and element.symbol == "Y"]
+    if outputs:
+        yield (
+            f"{', '.join(outputs)} will be disabled and held on, as in FILE: "
+            "the output may switch on at once, in STOP too"
+        )
 
 
 def data_rows(plan: RestorePlan, result: RestoreResult) -> Iterator[tuple[str, object]]:

@@ -110,6 +110,20 @@ def test_options_that_do_not_go_together(plants: tuple[Plant, Plant], cli: Cli) 
     assert "the file has no data" in error_of(done, 2)
 
 
+def test_what_may_move_at_once_is_warned_of(plants: tuple[Plant, Plant], cli: Cli) -> None:
+    press, spare = plants
+    simulation = build_simulation(state=press.state)
+    device = simulation.plcs[1]
+    device.running = True
+    device.memory.disabled["Y"][7] = device.memory.status["Y"][7] = 1
+    device.memory.revision += 1
+    simulation.save_if_changed()
+    assert cli("backup", "press.json", "--force", "--data", "-p", press.target).code == 0
+    done = cli(*restore(spare, "--data", "--dry-run"))
+    assert "Y7 will be disabled and held on, as in FILE: the output may switch on at once" in done.err
+    assert "The data of FILE were read in RUN: its values are not all of one moment." in done.out
+
+
 def test_nobody_to_ask(plants: tuple[Plant, Plant], cli: Cli) -> None:
     _, spare = plants
     before = spare.state.read_bytes()
