@@ -112,7 +112,7 @@ def test_faults_strike(cli: Cli) -> None:
         done = cli("status", "-p", door, "--retries", 1, "--timeout", 0.1)
         assert done.code == 3
         assert (
-            "s in total: nothing received; check that the PLC is on, and --station. A FATEK Ethernet module"
+            "s in total: nothing received; check that the PLC is on, and --station; 'fatektool doctor' looks"
             in one_line(done.err)
         )
 
