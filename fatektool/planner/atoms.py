@@ -8,7 +8,7 @@
     DR2         registers  R: 2, 3, wanted in one request
     DRC0        registers  DRC: 0, a line of their own, two of them, by even and odd address
 
-Timers' and counters' 32-bit registers are read as such: a counter may have 32 bits of its own.
+32-bit registers of timers and counters are read as such, because a counter may have 32 bits.
 """
 
 from __future__ import annotations
@@ -32,13 +32,13 @@ Atom = tuple[str, int]
 
 
 def atoms_of(element: Element) -> list[Atom]:
-    """The atoms that hold an element, the lowest first."""
+    """The atoms of an element, the lowest first."""
     symbol, first, last = _span(element)
     return [(symbol, address) for address in range(first, last + 1)]
 
 
 def _span(element: Element) -> tuple[str, int, int]:
-    """The line of an element, its first and last address there."""
+    """The line of an element, with its first and last address on it."""
     symbol, address, bits = element.symbol, element.address, element.kind.bits
     if bits > 1 and symbol.startswith(("W", "DW")):
         return symbol[-1], address, address + bits - 1
@@ -48,14 +48,14 @@ def _span(element: Element) -> tuple[str, int, int]:
 
 
 def parts_of(element: Element, value: int) -> dict[Atom, int]:
-    """A value as what each of the element's atoms holds of it."""
+    """The part of a value in each of the element's atoms."""
     atoms = atoms_of(element)
     width = element.kind.bits // len(atoms)
     return {atom: value >> (place * width) & ((1 << width) - 1) for place, atom in enumerate(atoms)}
 
 
 def value_of(element: Element, parts: Mapping[Atom, int]) -> int:
-    """The value of an element from what its atoms hold."""
+    """The value of an element from the parts in its atoms."""
     atoms = atoms_of(element)
     width = element.kind.bits // len(atoms)
     return sum(parts[atom] << (place * width) for place, atom in enumerate(atoms))
@@ -63,20 +63,20 @@ def value_of(element: Element, parts: Mapping[Atom, int]) -> int:
 
 @dataclass(slots=True)
 class AtomLine:
-    """Wanted elements of one symbol, in order, each as the span of its atoms.
+    """The elements of one symbol, in order, each as the span of its atoms.
 
-    A span within another is left out, so that first and last addresses both ascend.
+    A span within another is omitted, so first and last addresses both ascend.
 
     Attributes:
         symbol: ``X``, ``R``, ``DRC``, …
-        stride: how far apart neighbours are.
+        stride: the distance of consecutive elements.
         firsts: each span's first address.
         lasts: each span's last address.
         lowest: no request goes below this address,
         bound: nor to this one or past it.
-        exact: all between lowest and bound is wanted.
+        exact: all elements between lowest and bound are needed.
         start: the node of the first span.
-        ends: the places behind the stretches of neighbours, behind which there is a gap.
+        ends: the places after ranges of consecutive elements, before a gap.
         uneven: registers and pairs of them are side by side.
     """
 
@@ -100,7 +100,7 @@ class AtomLine:
         return len(self.firsts)
 
     def place_past(self, address: int, place: int) -> int:
-        """The place behind the last span that ends before this address, from a place on."""
+        """The place after the last span that ends before this address, from a place on."""
         return bisect_left(self.lasts, address, place)
 
     def straddled(self, address: int, place: int) -> bool:
@@ -109,17 +109,17 @@ class AtomLine:
         return across < len(self) and self.firsts[across] < address
 
     def rest_of_stretch(self, place: int) -> int:
-        """How many addresses there are from a place to the end of its stretch."""
+        """The number of addresses from a place to the end of its range."""
         return self.lasts[self.ends[bisect_right(self.ends, place)] - 1] + self.stride - self.firsts[place]
 
 
 def lines_of(elements: Iterable[Element | Stretch], limits: Mapping[str, int] | None) -> list[AtomLine]:
-    """The lines on which the elements lie, one behind the other.
+    """The lines of the elements, in sequence.
 
     Args:
-        elements: of any kind, in any order, also twice; stretches of them are taken as such.
-        limits: up to where gaps may be read over, by symbol, if that is before the largest address; None if
-            nothing may be touched that is not wanted.
+        elements: of any kind, in any order, also twice; ranges of them are used as such.
+        limits: the end of gaps that may be read, by symbol, if before the largest address; None if only the
+            given elements may be accessed.
     """
     spans: dict[tuple[str, int], set[tuple[int, int]]] = {}
     stretches: dict[tuple[str, int], list[tuple[range, range]]] = {}
@@ -164,14 +164,14 @@ def lines_of(elements: Iterable[Element | Stretch], limits: Mapping[str, int] | 
 def _in_order(
     spans: set[tuple[int, int]], stretches: list[tuple[range, range]]
 ) -> tuple[Sequence[int], Sequence[int]]:
-    """First and last addresses of all spans of a line; a stretch alone is in order already."""
+    """First and last addresses of all spans of a line; a single range is already in order."""
     if len(stretches) == 1 and not spans:
         return stretches[0]
     return _outermost(spans.union(*(zip(*ranges, strict=True) for ranges in stretches)))
 
 
 def _outermost(spans: set[tuple[int, int]]) -> tuple[list[int], list[int]]:
-    """First and last addresses of the spans that lie within no other."""
+    """First and last addresses of the spans that are not within another."""
     firsts: list[int] = []
     lasts: list[int] = []
     for first, last in sorted(spans, key=lambda span: (span[0], -span[1])):
@@ -192,8 +192,8 @@ def _stretch_ends(firsts: Sequence[int], lasts: Sequence[int], stride: int) -> l
 class Values:
     """Answers to planned reads, and the values of the elements in them.
 
-    Two answers may hold one atom. An element's value is that of the last answer that has it whole, so that
-    its parts are of one scan [E:one-scan].
+    Two answers may have one atom. An element's value is that of the last answer that has it completely, so
+    that its parts are from one scan [E:one-scan].
     """
 
     def __init__(self) -> None:
@@ -231,7 +231,7 @@ class Values:
         """The value of an element, unsigned; a discrete is 0 or 1.
 
         Raises:
-            KeyError: no answer held it.
+            KeyError: it is in no answer.
         """
         symbol, first, last = _span(element)
         if first == last:

@@ -1,4 +1,4 @@
-"""What the parts of a request cost on the wire, by the codec's own figures."""
+"""The costs of the parts of a request on the wire, from the codec."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ WORD: Final = 16
 
 
 def turnaround_bytes(turnaround_s: float, byte_time_s: float) -> float:
-    """A PLC's turnaround as so many bytes of line time."""
+    """A PLC's turnaround, as bytes of line time."""
     return turnaround_s / byte_time_s
 
 
 class Costs:
-    """Bytes of requests and answers, of reads or of writes, and what one request holds.
+    """Bytes of requests and answers, of reads or of writes, and the limits of one request.
 
     Args:
         codec: the protocol.
-        turnaround: the PLC's turnaround in bytes; every request pays it once.
+        turnaround: the PLC's turnaround in bytes; each request has it once.
         writes: the costs of 45, 47 and 49 instead of 44, 46 and 48.
     """
 
@@ -57,15 +57,15 @@ class Costs:
         return self._codec.request_bytes(request) + self._codec.answer_bytes(request)
 
     def _most(self, symbol: str) -> int:
-        """How many values a run holds."""
+        """The most values in a run."""
         return self._codec.most(symbol, writes=self._writes)
 
     def _packs_discretes(self, symbol: str) -> bool:
-        """True if discretes as such cost no more than words of them: then nothing else needs to be tried."""
+        """True if discretes cost no more than words of them: then words need not be examined."""
         return self._run_cost(symbol, WORD) <= self._run_cost(f"W{symbol}", 1)
 
     def _one_is_cheap(self, symbol: str) -> bool:
-        """True if a run of one costs less than the longer ones would have it."""
+        """True if a run of one costs less than expected from longer runs."""
         return 2 * self._run_cost(symbol, 2) > self._run_cost(symbol, 1) + self._run_cost(symbol, 3)
 
     def _run_cost(self, symbol: str, count: int) -> float:
@@ -83,7 +83,7 @@ class Costs:
         return WriteMixed(((element, 0),) * count) if self._writes else ReadMixed((element,) * count)
 
     def _run_value(self, symbol: str) -> int:
-        """Bytes that one more value adds to a run."""
+        """Bytes of one more value in a run."""
         return self._wire(self._run(symbol, 2)) - self._wire(self._run(symbol, 1))
 
     def _run_base(self, symbol: str) -> float:
@@ -91,5 +91,5 @@ class Costs:
         return self._wire(self._run(symbol, 1)) - self._run_value(symbol) + self._turnaround
 
     def _mixed_item(self, symbol: str) -> int:
-        """Bytes that one more item adds to a mixed request."""
+        """Bytes of one more item in a mixed request."""
         return self._wire(self._mixed(symbol, 2)) - self._wire(self._mixed(symbol, 1))

@@ -1,27 +1,26 @@
 """The ways to cover the elements of a line, as edges between its places.
 
-That every element is within one run or item, and that an edge leads from each place to every place that one
-can reach, would be enough for the least path. Exchange arguments leave out most edges and keep a least path:
+Edges from each place to every place that one run or item can reach would be enough for the least path. Most
+edges can be omitted without losing a least path:
 
-- A run of registers ends behind a stretch of neighbours or at its limit. If it ended within the stretch short
-  of its limit, it could take the next one over from whatever covers it, at no more cost.
-- Registers that are mixed before a run in the same stretch can be swapped with the last ones of that run, if
-  all are alike. So they are mixed only where the stretch's end is as near as one request and the run after it
-  can reach (neither 48 nor 49 holds more than a run), or where they are not alike.
-- A packed run begins at the last multiple of 8 that it can, and ends where the 8 discretes behind it are not
-  wanted, or at its limit. Otherwise it could take over a word, and what begins behind it would begin a word
-  later, if no wanted word is across the place where that one ends.
-- Discretes are read as such (44, a byte each) only as far as a packed run costs more, or cannot reach.
-- A discrete is an item of its own only where it is alone among its 8: two cost more than their word.
+- A run of registers ends after a range of consecutive elements or at its limit. If it ended earlier within
+  the range, it could include the next one, at no more cost.
+- Registers that are mixed before a run in the same range can be exchanged with the last ones of that run, if
+  all have the same width. So they are mixed only if one request and the run after it can reach the end of the
+  range (48 and 49 have no more than a run), or if the widths differ.
+- A packed run begins at the last possible multiple of 8, and ends where the 8 discretes after it are not
+  needed, or at its limit. Otherwise it could include one more word, and the next run would begin a word
+  later, if no needed word crosses that place.
+- Discretes are read as such (44, one byte each) only if a packed run costs more, or cannot reach them.
+- A discrete is a single item only if it is alone among its 8: two cost more than their word.
 
-Where nothing may be touched but what is wanted, as in writes, a packed run or word begins and ends with its
-discretes. Between such, or before and behind, they are run or mixed as such, up to a multiple of 8 or the
-stretch's end.
+If only the given elements may be accessed, as in writes, a packed run or word begins and ends with its
+discretes. Between, before and after these, discretes are in runs or mixed, up to a multiple of 8 or the end
+of the range.
 
-A protocol may write eight discretes in a byte whatever they are asked as (Modbus). Then there are runs of
-discretes only, and to each next element that fits into its last byte a run goes on for nothing. If all the
-rest of the line fits into one run, it ends only before a gap that costs more than another request: otherwise
-it could take over the run behind the gap.
+A protocol may always transmit eight discretes in a byte (Modbus). Then there are only runs of discretes, and
+an element that fits into the last byte of a run costs nothing. If the rest of the line fits into one run, it
+ends only before a gap that costs more than another request: otherwise it could include the run after the gap.
 """
 
 from __future__ import annotations
@@ -44,7 +43,7 @@ STEP: Final = 8
 
 
 class Edges:
-    """The edges from each place of each line, the places of all lines numbered through as nodes."""
+    """The edges from each place of each line; the places of all lines are nodes with consecutive numbers."""
 
     def __init__(self, lines: list[AtomLine], costs: Costs) -> None:
         self._lines = lines
@@ -90,7 +89,7 @@ class Edges:
         if line.uneven and self._costs.one_is_cheap(line.symbol):
             ends += range(place + 1, to)
         while to < len(line) and to - 1 > place and line.firsts[to] <= line.lasts[to - 1]:
-            to -= 1  # where elements overlap, the limit may be a bad place to end
+            to -= 1  # if elements overlap, the limit may not be a possible end
             ends.append(to)
         ends += line.ends[bisect_right(line.ends, place) : bisect_left(line.ends, to)]
         for end in ends:
@@ -99,8 +98,8 @@ class Edges:
     def _register_items(self, line: AtomLine, place: int) -> Iterator[Edge]:
         kind = KINDS[line.symbol]
         first, last = line.firsts[place], line.lasts[place]
-        # A full run of single registers costs no more than whatever else begins here: none of its words is
-        # cheaper in a mixed request, and a mixed request holds no more of them.
+        # A full run of single registers costs no more than any other edge here: none of its words is
+        # cheaper in a mixed request, and a mixed request has no more of them.
         near = self._costs.most(line.symbol) * kind.stride * (1 if first == last else 2)
         if not line.uneven and line.rest_of_stretch(place) >= near:
             return
@@ -113,19 +112,19 @@ class Edges:
         if paired and kind.words == 1 and line.symbol in "RDF":
             yield self._item(line, place + 2, double, first)
 
-    # --- discretes, read: gaps and the rest of a word may be read over ------------------------------
+    # --- discretes, read: gaps and the rest of a word may be included --------------------------------
 
     def _find_cuts(self, number: int, phase: int) -> list[tuple[int, int]]:
-        """Where packed runs that begin at ``phase`` modulo 16 may end: address, place behind."""
+        """The possible ends of packed runs that begin at ``phase`` modulo 16: address, place after."""
         line = self._lines[number]
         cuts = []
         for place, last in enumerate(line.lasts, 1):
             end = last + 1 + (phase - last - 1) % WORD
             if place < len(line):
                 if line.lasts[place] < end:
-                    continue  # the word holds the next one too
+                    continue  # the word has the next one too
                 if end <= line.firsts[place] < end + STEP and not line.straddled(end + WORD, place):
-                    continue  # it could take the next word over
+                    continue  # it could include the next word
             cuts.append((end, place))
         return cuts
 
@@ -147,7 +146,7 @@ class Edges:
             yield self._run(line, to, symbol, first, -(-(line.lasts[to - 1] + 1 - first) // WORD))
         if space < most and limit + STEP <= line.bound and first >= STEP:
             beyond = line.place_past(limit + STEP, place)
-            if beyond > to:  # what a run reaches that begins 8 earlier, and ends where the PLC does
+            if beyond > to:  # reached by a run that begins 8 earlier, and ends at the end of the PLC's range
                 yield self._run(line, beyond, symbol, first - STEP, space + 1)
 
     def _discrete_runs(self, line: AtomLine, place: int) -> Iterator[Edge]:
@@ -166,7 +165,7 @@ class Edges:
         for to in (*range(place + 1, near + 1), *range(unpacked + 1, limit + 1)):
             last = line.lasts[to - 1]
             if to < len(line) and line.firsts[to] == last + 1 and line.firsts[to] % STEP:
-                continue  # it could take the next one over
+                continue  # it could include the next one
             words = (last - begin) // WORD + 1
             if begin + words * WORD > line.bound or value * (last + 1 - first) < ahead + word * words:
                 yield self._run(line, to, symbol, first, last + 1 - first)
@@ -190,7 +189,7 @@ class Edges:
         if line.lasts[place] == first and not (next_to and 2 * item(symbol) >= item(f"W{symbol}")):
             yield self._item(line, place + 1, symbol, first)
 
-    # --- discretes, where eight of them take a byte in any case -----------------------------------------
+    # --- discretes, if eight of them always take one byte ------------------------------------------------
 
     def _bit_runs(self, line: AtomLine, place: int) -> Iterator[Edge]:
         first, most = line.firsts[place], self._costs.most(line.symbol)
@@ -211,7 +210,7 @@ class Edges:
             if to > place:
                 yield self._run(line, to, line.symbol, first, line.lasts[to - 1] + 1 - first)
 
-    # --- discretes, and nothing but those wanted ------------------------------------------------------
+    # --- discretes, only the given ones ---------------------------------------------------------------
 
     def _exact_runs(self, line: AtomLine, place: int) -> Iterator[Edge]:
         first = line.firsts[place]

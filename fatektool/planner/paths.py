@@ -1,17 +1,17 @@
-"""The least path from 0 to the end, where some edges share a cost: the mixed requests.
+"""The least path from 0 to the end, if some edges have a common cost: the mixed requests.
 
-An edge costs its own bytes, and so many mixed words. All mixed words of a path together cost
-``base * ceil(words / capacity)``. That is a shortest path with a resource, solved exactly:
+An edge costs its own bytes, and a number of mixed words. All mixed words of a path together cost
+``base * ceil(words / capacity)``. This is a shortest path with a resource, solved exactly:
 
-- For each number of mixed requests their words are limited, and the rest of the cost is the edges' own.
-- With a price on each word, no path within the limit costs less than the shortest one at that price less the
-  price of all words allowed: a bound from below. The path found is a bound from above.
-- The best price for a limit is found by walking the corners of (words, cost): a chord between two of them is
-  the next price, until no path is below the chord.
-- A number of requests whose bound is no less than the best path is done. For the others, from node to node,
-  all (words, cost) are kept that are not dominated and that could, with the bound of their rest, still beat
-  the best path. Nothing better is ever dropped. The same with a few labels a node is done before, but only to
-  find a good path soon.
+- For each number of mixed requests, the words are limited, and the rest of the cost is that of the edges.
+- With a price for each word, no path within the limit costs less than the shortest one at that price minus
+  the price of all allowed words: a lower bound. The path found is an upper bound.
+- The best price for a limit is found on the corners of (words, cost): a chord between two of them is the next
+  price, until no path is below the chord.
+- A number of requests whose bound is not below the best path is done. For the others, from node to node, all
+  (words, cost) are kept that are not dominated and that could, with the bound of the rest, be better than the
+  best path. A better path is never dropped. Before that, the same is done with a few labels for each node, to
+  find a good path early.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _NODES_A_STEP: Final = 8
 
 
 class Run(NamedTuple):
-    """A run: what it begins with, and how many."""
+    """A run: its first element and the number of elements."""
 
     symbol: str
     first: int
@@ -42,10 +42,10 @@ class Edge(NamedTuple):
     """A step of a path.
 
     Attributes:
-        to: the node it leads to, farther on than the one it comes from.
+        to: the node at its end, after the one at its beginning.
         cost: its own bytes.
         words: mixed words.
-        piece: what it means: a run, or mixed items.
+        piece: a run, or mixed items.
     """
 
     to: int
@@ -62,8 +62,8 @@ def least_path(
     Args:
         end: the last node.
         edges: the edges from a node; every node but the last has one.
-        base: what each mixed request costs.
-        capacity: how many words a mixed request holds.
+        base: the cost of each mixed request.
+        capacity: the most words in a mixed request.
     """
     search = Search(end, edges, base, capacity)
     for _ in search.steps():
@@ -72,7 +72,7 @@ def least_path(
 
 
 class _Priced(NamedTuple):
-    """The shortest path at a price a word: its words and own cost, and the shortest rest from every node."""
+    """The shortest path at a price per word: its words, own cost, and the shortest rest from each node."""
 
     price: float
     words: int
@@ -91,10 +91,10 @@ class Search:
     """The search for the least path, in steps of about a millisecond or less.
 
     Args:
-        end: as of ``least_path``, as the others are.
-        edges: likewise.
-        base: likewise.
-        capacity: likewise.
+        end: as of ``least_path``.
+        edges: as of ``least_path``.
+        base: as of ``least_path``.
+        capacity: as of ``least_path``.
     """
 
     def __init__(self, end: int, edges: Callable[[int], Iterable[Edge]], base: float, capacity: int) -> None:
@@ -109,11 +109,11 @@ class Search:
 
     @property
     def pieces(self) -> list[Run | list[Element]]:
-        """The pieces of the least path, when all steps are done."""
+        """The pieces of the least path, after all steps."""
         return [edge.piece for edge in self._best]
 
     def steps(self) -> Iterator[None]:
-        """Do the search, a step at a time."""
+        """Do the search, one step at a time."""
         yield from self._reach()
         dear = 1 + self._base + sum(max(edge.cost for edge in edges) for edges in self._graph.values())
         self._shortest(dear)  # no path has fewer words
@@ -133,7 +133,7 @@ class Search:
                 del stages[count]
 
     def _reach(self) -> Iterator[None]:
-        """Ask for the edges of all nodes that a path from 0 may touch, and keep them in order of nodes."""
+        """Collect the edges of all nodes that a path from 0 may reach, in the order of the nodes."""
         graph = self._graph
         todo = [0]
         while todo:
@@ -147,7 +147,7 @@ class Search:
         self._graph = dict(sorted(graph.items()))
 
     def _bound(self, count: int) -> float:
-        """What no path with so many mixed requests can cost less than."""
+        """The lower bound of the cost of paths with this number of mixed requests."""
         words = count * self._capacity
         return self._base * count + max(one.cost + one.price * (one.words - words) for one in self._known)
 
@@ -179,7 +179,7 @@ class Search:
         return self._known[-1]
 
     def _thin(self, share: _Priced) -> None:
-        """Drop the edges that no better path has, each word priced at its share of a full request."""
+        """Drop the edges that no better path has, with a word's share of a full request as its price."""
         begun = dict.fromkeys(self._graph, inf)
         begun[self._end] = inf
         begun[0] = 0.0
@@ -194,7 +194,7 @@ class Search:
         self._graph = {node: edges for node, edges in self._graph.items() if edges}
 
     def _corner(self, count: int) -> Generator[None, None, _Priced]:
-        """The best price for so many mixed requests, or one at which they cannot beat the best path."""
+        """The best price for this number of mixed requests, or one at which they cannot be better."""
         words = count * self._capacity
         while True:
             light = max((one for one in self._known if one.words <= words), key=lambda one: one.words)
@@ -207,9 +207,9 @@ class Search:
                 return found
 
     def _beat(self, count: int, corner: _Priced, width: float) -> Generator[None, None, bool]:
-        """Look for a better path with so many mixed requests; True if there is none left.
+        """Search a better path with this number of mixed requests; True if there is none left.
 
-        Of each node's labels no more than ``width`` go on, those that look best: few, or all.
+        At most ``width`` labels of each node are continued, the most promising ones: few, or all.
         """
         most = count * self._capacity
         price, rest = corner.price, corner.rest
@@ -248,7 +248,7 @@ def _path_of(label: _Label) -> list[Edge]:
 
 
 def _undominated(labels: dict[int, _Label]) -> list[tuple[int, _Label]]:
-    """Those that no other label with fewer words and less cost makes useless."""
+    """The labels for which there is no other with fewer words and less cost."""
     kept: list[tuple[int, _Label]] = []
     least = inf
     for words in sorted(labels):

@@ -1,9 +1,9 @@
-"""Reads: the requests, and nothing past what the PLC has.
+"""Reads: the requests, within the ranges of the PLC.
 
-A plan is made while it is carried out. Runs of registers in the middle of a long stretch are known without a
-search, as there is no other way from their places: they come first, and the search for the rest goes on by a
-step with each of them. So the first request is there at once, and a search among thousands of elements takes
-place while the line is busy. What a plan is does not depend on when it is asked for its requests.
+A plan is made while it is executed. Runs of registers in the middle of a long range are known without a
+search, because there is no alternative: they come first, and the search for the rest continues by a step with
+each of them. So the first request is known at once, and a search among thousands of elements is done while
+the line is busy. The plan does not depend on when its requests are taken.
 """
 
 from __future__ import annotations
@@ -45,17 +45,16 @@ def planned_reads(
     turnaround: float = 0.0,
     limits: Mapping[str, int] | None = None,
 ) -> Iterator[Request[Any]]:
-    """The requests that read these elements with the least line time, one by one as they are known.
+    """The requests that read these elements with the least line time, one by one, as soon as they are known.
 
     Args:
-        elements: of any kind, in any order, also twice; stretches of them are planned much faster.
+        elements: of any kind, in any order, also twice; ranges of them are planned much faster.
         codec: the protocol.
         turnaround: the PLC's time to answer, in bytes at this baud.
-        limits: how many of a kind the PLC has, by symbol, where that is known; beyond what is wanted nothing
-            is read past it.
+        limits: the number of elements of each symbol in the PLC, if known; gaps are not read above it.
 
     Raises:
-        UsageError: the protocol cannot name one of the elements.
+        UsageError: the protocol does not have one of the elements.
     """
     costs = Costs(codec, turnaround, writes=False)
     groups = neighbourhoods(elements, codec, writes=False)
@@ -65,10 +64,10 @@ def planned_reads(
 def neighbourhoods(
     elements: Iterable[Element | Stretch], codec: Codec, *, writes: bool
 ) -> list[list[Element | Stretch]]:
-    """Elements by what can share a run; a stretch that cannot, in its elements.
+    """Elements in groups that can be in one run; a range that cannot, as single elements.
 
     Raises:
-        UsageError: the protocol cannot name one of them.
+        UsageError: the protocol does not have one of them.
     """
     found: dict[int, list[Element | Stretch]] = {}
     for each in elements:
@@ -105,7 +104,7 @@ def _plan(lines: list[AtomLine], costs: Costs) -> Iterator[Request[Any]]:
 
 
 def _certain(lines: list[AtomLine], edges_of: Callable[[int], list[Edge]]) -> Iterator[Run]:
-    """The runs of every path: from the beginning of a line on, up to the first place with a choice."""
+    """The runs of all paths: from the beginning of a line to the first place with an alternative."""
     for line in lines:
         node = line.start
         while node < line.start + len(line):
@@ -124,7 +123,7 @@ def _read(run: Run) -> Request[Any]:
 
 
 def packed(elements: Iterable[Element], capacity: int) -> list[list[Element]]:
-    """Mixed items in as few requests as their words allow: the double ones first, so that none is lost."""
+    """Mixed items in as few requests as their words allow: double words first, so that no space is lost."""
     requests: list[list[Element]] = []
     space = 0
     for element in sorted(elements, key=lambda element: -element.kind.words):

@@ -1,6 +1,6 @@
-"""Writes: the requests, which write each atom once and touch none that was not asked.
+"""Writes: the requests, which write each given atom once, and no others.
 
-A value that is written twice may start twice what it starts in the program, so no two requests overlap.
+A value that is written twice may have its effect in the program twice, so no two requests overlap.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def plan_writes(
         turnaround: the PLC's time to answer, in bytes at this baud.
 
     Raises:
-        UsageError: the protocol cannot name one of the elements, or not write it.
+        UsageError: the protocol does not have one of the elements, or cannot write it.
     """
     wanted = list(items)
     parts: dict[Atom, int] = {}
