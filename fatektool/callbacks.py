@@ -1,7 +1,7 @@
-"""The callback of a caller who wants to be told nothing."""
+"""A callback that does nothing."""
 
 from __future__ import annotations
 
 
 def ignore(*_: object) -> None:
-    """Do nothing with what is told."""
+    """Do nothing."""

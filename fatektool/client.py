@@ -1,4 +1,4 @@
-"""A PLC as an object: a typed method for each command, over a ``Link``.
+"""A PLC as an object, with a typed method for each command, based on a ``Link``.
 
 All values are plain: discretes are bool, registers unsigned int, pages 128 bytes. An element is an
 ``Element`` or its text, ``"R12"``.
@@ -48,13 +48,13 @@ _MODE_TRIES = 20
 class Plc:
     """One PLC.
 
-    Every method that sends a request raises ``LineError`` if no valid answer comes (``NoAnswer`` after all
+    Every method that sends a request raises ``LineError`` without a valid answer (``NoAnswer`` after all
     retries), ``PlcRefused`` if the answer is an error code, and ``UsageError`` if the protocol cannot express
     the request. Every write raises ``LineReadOnly`` on a read-only line, before anything is sent.
 
     Args:
         link: requests to one station and their answers.
-        target: the target as the user named it.
+        target: the target as the user wrote it.
         resources: closed with the PLC; None if the caller closes the link.
         lent: the line, if other processes may use it between two rounds.
     """
@@ -84,7 +84,7 @@ class Plc:
 
     @property
     def station(self) -> int:
-        """The station that is asked. Set it to ask another station on the same line.
+        """The station of the PLC. Set it to send requests to another station on the same line.
 
         Raises:
             UsageError: no PLC can have this station.
@@ -99,7 +99,7 @@ class Plc:
         """Ask whether the PLC answers, by a request that changes nothing, with retries.
 
         Returns:
-            True for an answer, an error code too. False if no valid answer comes, and after ``close``.
+            True for an answer, also an error code. False without a valid answer, and after ``close``.
         """
         if not self._open:
             return False
@@ -112,7 +112,7 @@ class Plc:
         return True
 
     def take(self) -> None:
-        """Take the line back if it was lent; wait for it as long as another process uses it.
+        """Open the line again if it was released; wait for it as long as another process uses it.
 
         Raises:
             LineError: it cannot be opened.
@@ -123,11 +123,11 @@ class Plc:
     def lend(
         self, seconds: float, *, broken: bool = False, sleep: Callable[[float], object] | None = None
     ) -> None:
-        """Wait. A process that waits for the line gets it meanwhile, until ``take``.
+        """Wait. Another process that waits for the line gets it meanwhile, until ``take``.
 
         Args:
             seconds: how long to wait.
-            broken: True to open the line anew in any case.
+            broken: True to open the line again in any case.
             sleep: waits; it may raise to end the waiting. None for ``time.sleep``.
         """
         sleep = sleep or time.sleep
@@ -170,7 +170,7 @@ class Plc:
         if isinstance(status, RawStatus):
             raise DataError(
                 f"detailed status (53): expected {DETAILED_BYTES} bytes, got {len(status.raw)}, "
-                f"and no paper says what they mean",
+                "in a layout that no paper describes",
                 hint="'fatektool status' shows them",
             )
         return status
@@ -178,7 +178,7 @@ class Plc:
     def run(self) -> None:
         """Start the program (command 41), then read the mode back.
 
-        On some lines an acknowledgement is no proof: the echo of the request reads as one.
+        An acknowledgement is not a proof: on a line with echo, the echo of the request may look like one.
 
         Raises:
             PlcError: acknowledged, but the PLC is not in RUN.
@@ -203,7 +203,7 @@ class Plc:
                 flags = self.brief_status().flags
             except PlcRefused as error:
                 raise PlcError(
-                    f"the PLC acknowledged {word}, and its mode cannot be read back: {error.message}",
+                    f"the PLC acknowledged {word}, but its mode cannot be read back: {error.message}",
                     hint="look at the RUN lamp of the PLC",
                 ) from error
             if flags.running == run:
@@ -211,8 +211,8 @@ class Plc:
             if clock() > deadline:
                 break
         raise PlcError(
-            f"the PLC acknowledged {word}, but its status still says {other}",
-            hint="see 'fatektool status': an emergency stop or the PLC's own switch may hold it",
+            f"the PLC acknowledged {word}, but its status is still {other}",
+            hint="see 'fatektool status': an emergency stop or the switch of the PLC may prevent it",
         )
 
     # --- discretes --------------------------------------------------------------------------------
@@ -256,11 +256,11 @@ class Plc:
         self.link.ask(WriteRegisters(Element.of(first), tuple(values)))
 
     def read_mixed(self, elements: Iterable[Element | str]) -> tuple[int, ...]:
-        """Read elements of any kind (command 48), at most 64 words in all; a discrete is 0 or 1."""
+        """Read elements of any kind (command 48), at most 64 words in total; a discrete is 0 or 1."""
         return self.link.ask(ReadMixed(tuple(map(Element.of, elements))))
 
     def write_mixed(self, items: Iterable[tuple[Element | str, int]]) -> None:
-        """Write elements of any kind (command 49), at most 32 words in all; a discrete is 0 or 1."""
+        """Write elements of any kind (command 49), at most 32 words in total; a discrete is 0 or 1."""
         self.link.ask(WriteMixed(tuple((Element.of(each), value) for each, value in items)))
 
     # --- line and program -------------------------------------------------------------------------
@@ -276,7 +276,7 @@ class Plc:
         link.receiver.listen_until(link.transport.clock() + wire_s + link.timeout_s)
 
     def loopback(self, data: bytes) -> bytes:
-        """Send up to 256 characters (command 4E) and return what the PLC sends back, which is the same."""
+        """Send up to 256 characters (command 4E); returns the PLC's answer, which has the same characters."""
         return self.link.ask(Loopback(data))
 
     def read_page(self, page: int) -> bytes:
@@ -290,13 +290,13 @@ class Plc:
         *,
         separated: Collection[int] = (),
     ) -> list[bytes]:
-        """Read many pages of the program (command 4F), 128 bytes each, none of them that of another number.
+        """Read many pages of the program (command 4F), 128 bytes each, each proven to be the right one.
 
         Args:
             pages: page numbers.
-            on_page: is called with the number of pages read so far.
+            on_page: gets the number of pages read so far.
             separated: places in ``pages`` before which a brief status (40) is read, so that the answer to the
-                page before cannot pass for theirs.
+                page before cannot be taken for theirs.
         """
         from fatektool.exchange.batch import read_all  # who reads no program does not load it
 
@@ -321,7 +321,7 @@ class Plc:
 
         Args:
             pages: page numbers.
-            on_page: is called with the number of pages read so far.
+            on_page: gets the number of pages read so far.
 
         Returns:
             The pages before it, and the refusal; None if the PLC refused none.
@@ -339,11 +339,11 @@ class Plc:
     ) -> None:
         """Write many pages of the program (command 50) in order.
 
-        Read them back afterwards: an acknowledgement is no proof.
+        Read them back afterwards: an acknowledgement is not a proof.
 
         Args:
             pages: numbers with 128 bytes each.
-            on_page: is called with the number of pages acknowledged so far; on an error, the page behind
+            on_page: gets the number of pages acknowledged so far; on an error, the page after
                 those may be written or not.
         """
         from fatektool.exchange.batch import write_all

@@ -1,4 +1,4 @@
-"""From a PLC's address to a PLC that can be asked: lock, transport, trace, link."""
+"""Connections to PLCs: from an address to lock, transport, trace and link."""
 
 from __future__ import annotations
 

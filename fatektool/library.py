@@ -1,4 +1,4 @@
-"""What a program gets that imports fatektool: a PLC whose elements have names, and ``connect``.
+"""The library for other programs: a PLC with elements by name, and ``connect``.
 
 ::
 
@@ -51,8 +51,8 @@ class Plc(client.Plc):
             signed int, a float with ``:f32``, text with ``:hex``.
 
         Raises:
-            UsageError: an argument is no element; nothing was sent.
-            PlcError: the PLC refuses elements, or their bits are no value of that type. ``details`` has
+            UsageError: an argument is not an element; nothing was sent.
+            PlcError: the PLC refuses elements, or their bits are not a value of that type. ``details`` has
                 ``errors`` and ``values`` by name.
             LineError: no answer.
         """
@@ -76,7 +76,7 @@ class Plc(client.Plc):
                 command line: ``"0x5555"``, ``"on"``.
 
         Raises:
-            UsageError: a key is no element, or a value does not fit it; nothing was sent.
+            UsageError: a key is not an element, or a value does not fit it; nothing was sent.
             PlcError: values that the PLC refused or did not keep. ``details["errors"]`` has each by name.
             LineReadOnly: the line is read-only; nothing was sent.
             LineError: no answer; some of the values may have been written.
@@ -133,16 +133,16 @@ def connect(
             inventory, whose settings it then has; or a whole ``PlcAddress``.
         inventory: the file; None for the usual one: ``FATEKTOOL_INVENTORY``, ``./fatek.toml``, or that in the
             user's configuration folder.
-        needs: the commands without which there is nothing to do here.
-        lend: True to let other processes have the line between two rounds, with ``Plc.lend``.
-        note: gets messages for a curious user.
-        waiting: gets a message, at once, that says who has the line, if it must be waited for.
-        warn: gets a message, once, if answers come later than ``timeout_s``.
+        needs: commands that the protocol must have.
+        lend: True to let other processes use the line between two rounds, with ``Plc.lend``.
+        note: gets details, as with ``-v``.
+        waiting: gets a message with the process that has the line, if it must be waited for.
+        warn: gets a message, once, if answers are received later than ``timeout_s``.
         settings: the other fields of ``PlcAddress``: ``station=3``, ``protocol="mseries"``, ``timeout_s=2``.
 
     Raises:
-        UsageError: a setting has a wrong value, which the message names; a name that is not in the inventory;
-            the protocol lacks what is needed.
+        UsageError: a setting has a wrong value; a name is not in the inventory;
+            the protocol does not have one of ``needs``.
         DataError: the inventory has faults.
         LineError: the port or gateway cannot be opened; ``PortBusy`` among them.
     """

@@ -1,10 +1,10 @@
-"""The protocols by name, and where each part of one is written. There is no other list of them.
+"""The protocols by name, with the place of each part. There is no other list of them.
 
 To add a protocol: write its codec, its explainer and its simulated slave, and add a row. To add a framing of
 Modbus: write one file in ``protocol/modbus/`` and one in ``simulator/slaves/modbus/``, and add a row.
 
-Parts are named as text, ``module:NAME``, for two reasons. A part is loaded when it is asked for: a FACON
-line does not wait for Modbus. And the client and the simulator both read this table, but neither imports the
+Parts are given as text, ``module:NAME``, for two reasons. A part is loaded when it is needed: a FACON line
+does not wait for Modbus. And the client and the simulator both read this table, but neither imports the
 other.
 """
 
@@ -21,7 +21,7 @@ P = TypeVar("P")
 
 
 class Parts(NamedTuple):
-    """What belongs to one protocol.
+    """The parts of one protocol.
 
     Attributes:
         trace_code: its number in a ``.pcap`` trace; never used again for another protocol.
@@ -76,7 +76,7 @@ DEFAULT: Final = "facon"
 class Loaded(Mapping[str, P]):
     """One part of every protocol, by the protocol's name, in the order of the table.
 
-    A name is known without its part: only ``[]`` loads one.
+    The names are known without the parts: only ``[]`` loads one.
 
     Args:
         column: ``codec``, ``explainer`` or ``slave``.

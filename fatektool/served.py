@@ -1,4 +1,4 @@
-"""Simulated PLCs behind a TCP port, in a thread of this process: for the tests of a program of your own."""
+"""Simulated PLCs on a TCP port, in a thread of this process: for tests of your own program."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class SimulatedTarget:
-    """Simulated PLCs that can be asked.
+    """Simulated PLCs with an address.
 
     Attributes:
-        target: where they are: ``tcp://127.0.0.1:41234``.
+        target: their address: ``tcp://127.0.0.1:41234``.
         host: the host in it.
         port: the port in it.
-        plcs: what they hold, by station: ``plcs[1].read_words("R", 0, 1)``, ``plcs[1].running``.
+        plcs: the PLCs by station: ``plcs[1].read_words("R", 0, 1)``, ``plcs[1].running``.
     """
 
     target: str
@@ -47,13 +47,13 @@ def simulate(
         stations: 1 to 254, each once.
         model: as of ``fatektool simulate --model``; None for the protocol's usual one.
         protocol: ``facon``, ``mseries``, ``modbus-rtu``, ``modbus-ascii`` or ``modbus-tcp``.
-        faults: what goes wrong, as ``"KIND=P"``: ``"drop=0.1"`` loses every tenth answer.
+        faults: injected faults, as ``"KIND=P"``: ``"drop=0.1"`` loses every tenth answer.
         seed: of the faults: the same seed, the same faults.
-        baud: bits per second, to pace the line; None for a line that takes no time.
+        baud: bits per second of the line; None for no wire time.
 
     Raises:
         UsageError: an argument has a wrong value.
-        LineError: no TCP port can be had.
+        LineError: no TCP port is free.
     """
     from fatektool.simulator.build import build_simulation
     from fatektool.simulator.listen.servers import Server, running

@@ -1,4 +1,4 @@
-"""What frozen dataclasses of one shape share: comparison, hash and text, written once.
+"""The common methods of frozen dataclasses: comparison, hash and text, written once.
 
 ``dataclass`` writes and compiles these anew for each class, which takes time at each start. What most
 commands load inherits them instead: ``@dataclass(frozen=True, slots=True, eq=False, repr=False)``.

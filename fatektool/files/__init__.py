@@ -1,1 +1,1 @@
-"""Files that appear whole or not at all, strict JSON and TOML, times in documents."""
+"""Files that are written completely or not at all, strict JSON and TOML, times in documents."""

@@ -1,17 +1,17 @@
-"""Files that appear whole or not at all.
+"""Files that are written completely or not at all.
 
-The order of a commit, and what a crash leaves::
+The order of a commit, and the result of a crash::
 
-    1. write a temporary file in the same folder     a crash leaves it behind, FILE as it was
+    1. write a temporary file in the same folder     it remains, FILE is unchanged
     2. fsync it                                      the same
-    3. link it to FILE (new) or rename it (replace)  FILE is whole
-    4. fsync the folder                              FILE survives a power cut
+    3. link it to FILE (new) or rename it (replace)  FILE is complete
+    4. fsync the folder                              FILE is kept after a power cut
 
-From step 3 on the file is there, and nothing takes that back: a folder that cannot be synced (a network
-share, a folder that may be written and not read) is a ``FileWarning``, no error.
+From step 3 on the file exists: if the folder cannot be synced (a network share, a folder that may be written
+but not read), that is a ``FileWarning``, not an error.
 
-A symlink is followed: the file that it names is replaced, not the link. Files are made with the user's
-umask and never wider than 0640 unless asked for, as a program is somebody's property.
+A symlink is followed: its target is replaced, not the link. Files are created with the user's umask, and
+never with more than 0640 unless required, because a program is property of its owner.
 """
 
 from __future__ import annotations
@@ -34,15 +34,15 @@ STANDARD: Final = "-"
 
 _MODE = 0o640
 _NO_SYNC: Final = {errno.EINVAL, errno.ENOTSUP, errno.ENOSYS, errno.EBADF, errno.EPERM, errno.ENOTTY}
-"""What file systems answer that cannot sync, network shares above all. A failing disk is another matter."""
+"""The errors of file systems that cannot sync, such as network shares; a failing disk has other errors."""
 _MOST_NAMES: Final = 10_000
 
 
 def require_place(path: Path, *, overwrite: bool) -> Path:
-    """Check, before any work is done, that a file can be written here; give the path it really has.
+    """Check, before any work, that a file can be written; returns its real path.
 
     Raises:
-        UsageError: it exists and is to be kept, its folder is not there or not writable, it is no file.
+        UsageError: it exists and must be kept, its folder is missing or not writable, or it is not a file.
     """
     if is_pipe(path):
         return path
@@ -50,7 +50,7 @@ def require_place(path: Path, *, overwrite: bool) -> Path:
     try:
         real = Path(os.path.realpath(path))
         if real.is_symlink():
-            raise UsageError(f"{path} is a symbolic link that leads to itself", file=str(path))
+            raise UsageError(f"{path} is a symbolic link to itself", file=str(path))
         if real.is_dir():
             raise UsageError(f"{path} is a folder, expected a file name", file=str(path))
         if real.exists() and not real.is_file():
@@ -64,7 +64,7 @@ def require_place(path: Path, *, overwrite: bool) -> Path:
 
 
 def is_pipe(path: Path) -> bool:
-    """True for what passes bytes on to another process, as the shell's ``>(gzip > x)`` and a FIFO do."""
+    """True for a pipe to another process, such as the shell's ``>(gzip > x)`` or a FIFO."""
     try:
         return stat.S_ISFIFO(path.stat().st_mode)
     except (OSError, ValueError):
@@ -72,27 +72,27 @@ def is_pipe(path: Path) -> bool:
 
 
 def require_folder(path: Path) -> Path:
-    """Check that files can be made in this folder.
+    """Check that files can be created in this folder.
 
     Raises:
-        UsageError: it is no folder, or not writable.
+        UsageError: it is not a folder, or not writable.
     """
     try:
         is_folder = path.is_dir()
     except (OSError, ValueError) as error:  # a name that is too long, or none
         raise file_error("look at", path, error) from error
     if not is_folder:
-        raise UsageError(f"{path} is no folder", hint="make it first, or name another", file=str(path))
+        raise UsageError(f"{path} is not a folder", hint="create it first, or use another", file=str(path))
     if not os.access(path, os.W_OK):
-        raise UsageError(f"folder {path} is not writable", hint="choose another place", file=str(path))
+        raise UsageError(f"folder {path} is not writable", hint="choose another folder", file=str(path))
     return path
 
 
 def make_folder(path: Path) -> bool:
-    """Have a folder in which files can be made; True if it was missing.
+    """Make sure that a folder exists in which files can be created; True if it was missing.
 
     Raises:
-        UsageError: it cannot be made, is no folder, or is not writable.
+        UsageError: it cannot be created, is not a folder, or is not writable.
     """
     try:
         made = not path.exists()
@@ -108,21 +108,21 @@ def make_folder(path: Path) -> bool:
 
 
 def write_whole(path: Path, data: bytes, *, overwrite: bool, mode: int = _MODE) -> None:
-    """Write a file so that it is whole or absent, on disk when this returns.
+    """Write a file completely or not at all; it is on disk when this returns.
 
     Args:
         path: the file.
         data: its bytes.
-        overwrite: replace one that is there.
-        mode: its rights, less the user's umask; another for what is nobody's secret.
+        overwrite: replace an existing file.
+        mode: its permissions, without the user's umask.
 
     Raises:
         FileExists: it exists and ``overwrite`` is False.
         UsageError: its folder cannot be written.
-        DataError: the disk is full or broken; the file is as it was.
+        DataError: the disk is full or damaged; the file is unchanged.
 
     Warns:
-        FileWarning: it is there, and may not survive a power cut.
+        FileWarning: it exists, but may be lost in a power cut.
     """
     real = require_place(path, overwrite=overwrite)
     if is_pipe(real):
@@ -146,7 +146,7 @@ def write_whole(path: Path, data: bytes, *, overwrite: bool, mode: int = _MODE) 
 
 
 def _write_through(path: Path, data: bytes) -> None:
-    """Give all bytes to a pipe: what becomes of them is its reader's."""
+    """Write all bytes to a pipe; its reader is responsible for them."""
     try:
         with path.open("wb") as pipe:
             pipe.write(data)
@@ -159,7 +159,7 @@ def read_bounded(path: Path, limit: int) -> bytes:
 
     Raises:
         UsageError: there is no such file, it may not be read, or standard input has nothing (any more).
-        DataError: it is larger, or the disk is broken.
+        DataError: it is larger, or the disk is damaged.
     """
     try:
         if str(path) == STANDARD:
@@ -172,7 +172,7 @@ def read_bounded(path: Path, limit: int) -> bytes:
         raise file_error("read", path, error) from error
     if not data and str(path) == STANDARD:
         raise UsageError(
-            "-: standard input is empty", hint="name it once, behind a command that prints something"
+            "-: standard input is empty", hint="use - only once, after a command that prints something"
         )
     if len(data) > limit:
         raise DataError(f"{path}: expected at most {limit} bytes, got more", file=str(path))
@@ -180,11 +180,11 @@ def read_bounded(path: Path, limit: int) -> bytes:
 
 
 def write_new(folder: Path, stem: str, suffix: str, data: bytes) -> Path:
-    """Write a file under a name that no file has yet: ``stem.suffix``, else ``stem-2.suffix`` and so on.
+    """Write a file with a new name: ``stem.suffix``, else ``stem-2.suffix`` and so on.
 
     Raises:
         UsageError: the folder cannot be written, or all names are taken.
-        DataError: the disk is full or broken; nothing was written.
+        DataError: the disk is full or damaged; nothing was written.
     """
     for number in range(1, _MOST_NAMES + 1):
         path = folder / (f"{stem}.{suffix}" if number == 1 else f"{stem}-{number}.{suffix}")
@@ -197,34 +197,34 @@ def write_new(folder: Path, stem: str, suffix: str, data: bytes) -> Path:
 
 
 def exists_already(path: Path, hint: str | None = None) -> FileExists:
-    """The refusal to replace a file; ``hint`` is the next step where there is no ``--force``."""
+    """The refusal to replace a file; ``hint`` is the next step if there is no ``--force``."""
     return FileExists(
         f"{path} exists already and is kept", hint=hint or "choose another name, or --force", file=str(path)
     )
 
 
 def file_error(what: str, path: Path, error: OSError | ValueError) -> FatektoolError:
-    """An error of the file system in the project's words.
+    """An error of the file system as one of the project.
 
-    A place that cannot be used is a usage error; a disk that fails is a data error.
+    A path that cannot be used is a usage error; a disk that fails is a data error.
     """
     reason = getattr(error, "strerror", None) or str(error)
     message = f"cannot {what} {path}: {reason}"
     number = getattr(error, "errno", None)
     if number in {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}:
         return DataError(
-            message, hint="free some space and run it again; the file is as it was", file=str(path)
+            message, hint="free some space and run it again; the file is unchanged", file=str(path)
         )
     if number == errno.EIO:
         return DataError(message, hint="check the disk", file=str(path))
-    return UsageError(message, hint="check the name and its rights", file=str(path))
+    return UsageError(message, hint="check the name and the permissions", file=str(path))
 
 
 def write_synced(path: Path, data: bytes, mode: int = _MODE) -> None:
-    """Write a new file, on disk when this returns but for its name: that is ``sync_folder``'s.
+    """Write a new file; it is on disk when this returns, except its name: see ``sync_folder``.
 
     Raises:
-        OSError: it exists, or cannot be written whole.
+        OSError: it exists, or cannot be written completely.
     """
     flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
     with os.fdopen(os.open(path, flags, mode), "wb") as file:
@@ -234,10 +234,10 @@ def write_synced(path: Path, data: bytes, mode: int = _MODE) -> None:
 
 
 def sync(descriptor: int, path: Path) -> None:
-    """See to it that what was written to a file survives a power cut, where the file system can do that.
+    """Sync the data of a file to the disk, if the file system can do that.
 
     Raises:
-        OSError: the disk is full or broken.
+        OSError: the disk is full or damaged.
 
     Warns:
         FileWarning: the file system cannot sync.
@@ -251,7 +251,7 @@ def sync(descriptor: int, path: Path) -> None:
 
 
 def _put_new(temporary: Path, real: Path) -> None:
-    """Give the file its name unless another has it; without hard links (FAT, Windows) by rename."""
+    """Give the file its name, unless another file has it; without hard links (FAT, Windows) by rename."""
     try:
         os.link(temporary, real)
     except FileExistsError:
@@ -263,7 +263,7 @@ def _put_new(temporary: Path, real: Path) -> None:
 
 
 def sync_folder(folder: Path) -> None:
-    """See to it that the names in a folder survive a power cut; the files are there, whatever comes of it.
+    """Sync the names in a folder to the disk; the files exist in any case.
 
     Warns:
         FileWarning: the folder cannot be synced.
@@ -283,8 +283,8 @@ def sync_folder(folder: Path) -> None:
 
 def _warn_of_sync(what: str, error: OSError) -> None:
     warnings.warn(
-        f"{what} may not survive a power cut, as it cannot be synced: {error.strerror or error}; "
-        f"the files themselves are whole",
+        f"{what} may be lost in a power cut, because it cannot be synced: {error.strerror or error}; "
+        f"the files themselves are complete",
         FileWarning,
         stacklevel=3,
     )

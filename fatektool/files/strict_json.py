@@ -1,4 +1,4 @@
-"""JSON that says one thing: no key twice in an object, no NaN and no Infinity.
+"""JSON with one meaning: no key twice in an object, no NaN and no Infinity.
 
 Of a key that is there twice some readers take the last, others the first: a file that two
 readers understand in two ways is refused.
@@ -16,7 +16,7 @@ def read_json(data: bytes) -> Any:
     """Read a document.
 
     Raises:
-        ValueError: it is none, it is too deep, or it could be read in two ways.
+        ValueError: it is not JSON, is too deep, or has two meanings.
     """
     try:
         return json.loads(plain_text(data), object_pairs_hook=_once_each, parse_constant=_no_number)
@@ -27,9 +27,9 @@ def read_json(data: bytes) -> Any:
 def _once_each(items: list[tuple[str, Any]]) -> dict[str, Any]:
     found = dict(items)
     if len(found) != len(items):
-        raise ValueError("a key is there twice")
+        raise ValueError("a key occurs twice")
     return found
 
 
 def _no_number(text: str) -> float:
-    raise ValueError(f"{text} is no JSON")
+    raise ValueError(f"{text} is not JSON")

@@ -102,7 +102,7 @@ ERRORS = r"""
 2 status -p PLC --trace x.txt
     ends in .pcap or .ndjson
 2 status -p PLC --trace no/x.pcap
-    no is no folder; make it first
+    no is not a folder; create it first
 2 backup old.json -p PLC
     exists already and is kept; .*--force
 2 backup x.json --raw old.json -p PLC
@@ -112,7 +112,7 @@ ERRORS = r"""
 2 backup x --raw - -p PLC
     expected a file name
 2 backup no/x -p PLC
-    no is no folder; make it first
+    no is not a folder; create it first
 2 backup /dev/null --force -p PLC
     is a device, expected a file name
 2 inspect old.json --raw old.json --force
@@ -128,7 +128,7 @@ ERRORS = r"""
 2 restore new.json -p PLC --rollback --no-safety-backup
     does not go with
 2 restore new.json -p PLC --safety-dir old.json --yes
-    old.json is no folder
+    old.json is not a folder
 2 restore old.json --run -p PLC
     add --yes
 2 run -p PLC

@@ -138,7 +138,7 @@ def test_an_acknowledged_mode_that_does_not_come(run: bool) -> None:
     peer = Rules({RUN: frame("410"), STOP: frame("410"), STATUS: STOPPED if run else RUNNING})
     plc = Plc(linked(peer), "rs485")
     word, other = ("RUN", "STOP") if run else ("STOP", "RUN")
-    with pytest.raises(PlcError, match=f"acknowledged {word}, but its status still says {other}") as caught:
+    with pytest.raises(PlcError, match=f"acknowledged {word}, but its status is still {other}") as caught:
         plc.run() if run else plc.stop()
     assert caught.value.exit_code == 4
     assert "fatektool status" in str(caught.value.hint)

@@ -84,7 +84,7 @@ def test_a_plc_that_refuses_loopbacks_is_read_over_a_line_that_loses_answers(los
 
 
 def test_a_mode_that_cannot_be_read_back_is_acknowledged() -> None:
-    with pytest.raises(PlcError, match="acknowledged RUN, and its mode cannot be read back: the PLC refused"):
+    with pytest.raises(PlcError, match="acknowledged RUN, but its mode cannot be read back: the PLC refused"):
         client(Refusing(b"40")).run()
 
 

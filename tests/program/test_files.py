@@ -89,8 +89,8 @@ def test_a_symlink_that_leads_to_itself(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "message"),
     [
-        ("missing/file", "no folder; make it first"),
-        ("file/below", "no folder"),
+        ("missing/file", "not a folder; create it first"),
+        ("file/below", "not a folder"),
         (".", "is a folder, expected a file name"),
         ("x" * 300, "too long"),
         ("nul\0", "null"),
@@ -120,13 +120,13 @@ def test_a_device_is_no_file_to_replace(*, overwrite: bool) -> None:
 @pytest.mark.skipif(os.geteuid() == 0, reason="root writes to read-only folders")
 def test_a_read_only_folder(tmp_path: Path) -> None:  # pragma: no cover  # the container's user is root
     tmp_path.chmod(0o500)
-    with pytest.raises(UsageError, match="is not writable; choose another place"):
+    with pytest.raises(UsageError, match="is not writable; choose another folder"):
         write_whole(tmp_path / "file", NEW, overwrite=False)
 
 
 def test_a_read_only_folder_by_what_the_system_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "access", lambda path, how: False)  # noqa: ARG005
-    with pytest.raises(UsageError, match="is not writable; choose another place"):
+    with pytest.raises(UsageError, match="is not writable; choose another folder"):
         require_folder(tmp_path)
 
 
@@ -137,7 +137,7 @@ def test_a_read_only_folder_by_what_the_system_says(tmp_path: Path, monkeypatch:
         (OSError(errno.ENOSPC, "No space left on device"), DataError, "No space left.*free some space"),
         (OSError(errno.EDQUOT, "Disk quota exceeded"), DataError, "free some space"),
         (OSError(errno.EIO, "Input/output error"), DataError, "check the disk"),
-        (OSError(errno.EROFS, "Read-only file system"), UsageError, "check the name and its rights"),
+        (OSError(errno.EROFS, "Read-only file system"), UsageError, "check the name and the permissions"),
         (KeyboardInterrupt(), KeyboardInterrupt, None),
     ],
     ids=["full", "quota", "broken", "read-only", "ctrl-c"],
@@ -183,7 +183,7 @@ def test_a_folder_that_cannot_be_synced(
     if overwrite:
         path.write_bytes(OLD)
     failed = fail_at(monkeypatch, "fsync of the folder", OSError(number, os.strerror(number)))
-    with pytest.warns(FileWarning, match=f"folder {tmp_path} may not survive a power cut"):
+    with pytest.warns(FileWarning, match=f"folder {tmp_path} may be lost in a power cut"):
         write_whole(path, NEW, overwrite=overwrite)
     assert failed
     assert path.read_bytes() == NEW
@@ -200,7 +200,7 @@ def test_ctrl_c_while_a_folder_is_synced(tmp_path: Path, monkeypatch: pytest.Mon
 @pytest.mark.parametrize("number", [errno.ENOSYS, errno.EINVAL], ids=errno.errorcode.__getitem__)
 def test_a_file_system_that_cannot_sync(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int) -> None:
     fail_at(monkeypatch, "fsync", OSError(number, os.strerror(number)))
-    with pytest.warns(FileWarning, match=f"{tmp_path} may not survive a power cut"):
+    with pytest.warns(FileWarning, match=f"{tmp_path} may be lost in a power cut"):
         write_whole(tmp_path / "file", NEW, overwrite=False)
     assert (tmp_path / "file").read_bytes() == NEW
 

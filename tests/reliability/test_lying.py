@@ -109,7 +109,7 @@ def test_a_mode_that_is_acknowledged_and_does_not_come(cli: Cli, door: Door, com
     done = cli(command, "--yes", "-p", door.target)
     assert done.code == 4
     word, other = ("RUN", "STOP") if command == "run" else ("STOP", "RUN")
-    assert f"acknowledged {word}, but its status still says {other}; see 'fatektool status'" in one_line(
+    assert f"acknowledged {word}, but its status is still {other}; see 'fatektool status'" in one_line(
         done.err
     )
 
@@ -123,7 +123,7 @@ def test_a_stop_that_is_acknowledged_and_not_made_lets_nothing_be_written(
     device.stop = lambda: None  # type: ignore[method-assign]  # as the PLC's own switch has it
     done = cli("restore", "new.json", "--stop", "--run", "--yes", "-q", "-p", door.target)
     assert done.code == 4
-    assert "acknowledged STOP, but its status still says RUN" in one_line(done.err)
+    assert "acknowledged STOP, but its status is still RUN" in one_line(done.err)
     assert door.pages == OLD.pages
 
 

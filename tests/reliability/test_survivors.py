@@ -268,11 +268,11 @@ def test_an_error_of_a_file_names_the_file_for_scripts_and_people(name: str, tmp
 @pytest.mark.parametrize(
     ("number", "kind", "hint"),
     [
-        (errno.ENOSPC, DataError, "free some space and run it again; the file is as it was"),
-        (errno.EDQUOT, DataError, "free some space and run it again; the file is as it was"),
-        (errno.EFBIG, DataError, "free some space and run it again; the file is as it was"),
+        (errno.ENOSPC, DataError, "free some space and run it again; the file is unchanged"),
+        (errno.EDQUOT, DataError, "free some space and run it again; the file is unchanged"),
+        (errno.EFBIG, DataError, "free some space and run it again; the file is unchanged"),
         (errno.EIO, DataError, "check the disk"),
-        (errno.EACCES, UsageError, "check the name and its rights"),
+        (errno.EACCES, UsageError, "check the name and the permissions"),
     ],
 )
 def test_what_a_file_system_says(number: int, kind: type[FatektoolError], hint: str) -> None:

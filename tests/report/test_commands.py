@@ -164,7 +164,7 @@ def test_a_report_that_cannot_be_written_in_the_end(
     done = cli("watch", "R0", "--retries", "0", "--timeout", "0.05", "--report", "gone/x.html")
     assert done.code == 3
     *_, warning, last = done.err.splitlines()
-    assert "gone is no folder" in warning
+    assert "gone is not a folder" in warning
     assert warning.startswith("warning: ")
     assert last.startswith("fatektool: no answer")
 
@@ -219,7 +219,7 @@ def test_a_folder_of_another_format_has_no_series(press: Press, cli: Cli) -> Non
     ("name", "said"),
     [
         ("old.json", "old.json exists and is not a report: it is not replaced; name another file"),
-        ("no/x.html", "no is no folder"),
+        ("no/x.html", "no is not a folder"),
         (".", ". is a folder, expected a file name"),
         ("/dev/null", "is a device"),
         ("-", "--report -: expected a file name"),

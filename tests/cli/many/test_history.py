@@ -153,7 +153,7 @@ def test_export_to_stdout(filled: Cli) -> None:
         ),
         (2, "record x none.json", "cannot read none.json: No such file"),
         (2, "export press one.json", "one.json exists already"),
-        (2, "export press no/x.json", "no is no folder"),
+        (2, "export press no/x.json", "no is not a folder"),
         (2, "frobnicate", "no such command 'frobnicate'"),
         (5, "check --history .", ". is not a git repository"),
         (5, "record x bad.json", "bad.json: not a backup file"),

@@ -97,7 +97,7 @@ def test_the_disk_is_full(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None
 def test_the_safety_folder_cannot_be_used(bench: Bench) -> None:
     done = bench.run("--yes", "--safety-dir", "new.json")
     assert done.code == 2
-    assert "new.json is no folder" in last(done)
+    assert "new.json is not a folder" in last(done)
     bench.untouched()
 
 

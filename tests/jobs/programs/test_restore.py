@@ -223,7 +223,7 @@ def test_a_plc_that_keeps_its_program_to_itself(tmp_path: Path) -> None:
 
 def test_a_safety_backup_that_cannot_be_written(tmp_path: Path) -> None:
     bench = Bench(OLD)
-    with pytest.raises(UsageError, match="no folder"):
+    with pytest.raises(UsageError, match="not a folder"):
         restore(bench.plc, backup(NEW), tmp_path / "x", confirm=lambda *_: True,
                 safety_folder=tmp_path / "missing")  # fmt: skip
     assert bench.pages == OLD.pages

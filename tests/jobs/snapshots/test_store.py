@@ -388,7 +388,7 @@ def test_a_folder_that_may_not_be_listed(unlisted: Path) -> None:
     """One file, told of as written."""
     done = as_nobody(unlisted, "snapshot", "R0:3", "-p", "sim:", "-o", f"{unlisted}/")
     assert done.returncode == 0, done.stderr
-    assert f"warning: a new name in folder {unlisted} may not survive a power cut" in done.stderr
+    assert f"warning: a new name in folder {unlisted} may be lost in a power cut" in done.stderr
     (file,) = unlisted.iterdir()
     assert load_snapshot(file, print).values.keys() == {"R0", "R1", "R2"}
     done = as_nobody(unlisted, "backup", unlisted / "x.json", "-p", "sim:")

@@ -61,7 +61,7 @@ class WatchView:
         return self.message or f"{more}{_KEYS}"
 
     def fit(self, space: int) -> range:
-        """The places that are shown where so many have room."""
+        """The places that are shown on ``space`` lines."""
         self.space = max(space, 1)
         self.top = min(self.top, max(self.count - self.space, 0))
         return range(self.top, min(self.top + self.space, self.count))

@@ -120,7 +120,7 @@ def test_a_dry_run_writes_nothing(plc: Path, cli: Cli) -> None:
         (["--dial-control", "5"], "5 is not in the range 1<=x<=4"),
         (["--auto-answer", "256"], "256 is not in the range"),
         (["--tone", "--no-safety-snapshot", "--safety-dir", "."], "does not go with"),
-        (["--tone", "--safety-dir", "plc.state"], "plc.state is no folder"),
+        (["--tone", "--safety-dir", "plc.state"], "plc.state is not a folder"),
     ],
 )
 def test_what_is_refused_writes_nothing(plc: Path, cli: Cli, words: list[str], message: str) -> None:
