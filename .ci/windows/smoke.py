@@ -63,6 +63,8 @@ WITHOUT = [
     ("schema status", 0),
     ("completion bash", 0),
     ("simulate --help", 0),
+    ("help", 0),
+    ("version", 0),
     ("inspect com2.json", 2),
     ("status -p com2.json", 2),
     ("status -p COM9", 3),

@@ -26,7 +26,7 @@ SET_UP = "Cannot configure port, something went wrong. Original message: {}"
 BUSY, MISSING, SETTINGS, BROKEN, UNPLUGGED = (
     "another program has the port open",
     "no such port",
-    "--baud and --format",
+    "--baud and --line",
     "driver",
     "plug it in again",
 )
@@ -82,7 +82,7 @@ def test_a_speed_that_windows_refuses_is_named(monkeypatch: pytest.MonkeyPatch) 
     cause = SET_UP.format("OSError(22, 'The parameter is incorrect.', None, 87)")
     assert str(refusal(monkeypatch, serial.SerialException(cause))) == (
         "COM3: cannot be used as a serial port at 9600 7E1: the driver does not accept this baud rate or "
-        "format (Windows error 87); check the name; check that the adapter supports this --baud and --format"
+        "format (Windows error 87); check the name; check that the adapter supports this --baud and --line"
     )
 
 

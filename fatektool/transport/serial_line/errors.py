@@ -66,7 +66,7 @@ def _windows_error(target: str, settings: LineSettings, error: Exception) -> Lin
         case WindowsErrorKind.NOT_SUPPORTED:
             return LineError(
                 f"{target}: cannot be used as a serial port at {settings}: {found.text} ({found})",
-                hint="check the name; check that the adapter supports this --baud and --format",
+                hint="check the name; check that the adapter supports this --baud and --line",
             )
         case WindowsErrorKind.BROKEN:
             return LineError(
