@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import sys
+import time
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final, TextIO
 
@@ -12,7 +13,7 @@ import click
 from fatektool.errors import UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sized
+    from collections.abc import Callable, Iterable, Iterator, Sized
     from types import TracebackType
     from typing import Self, TextIO
 
@@ -83,11 +84,17 @@ class Held:
     """Lines for stderr while a screen is drawn, which they would break: shown on it, and printed behind it.
 
     Where stderr goes elsewhere, they go there at once.
+
+    Attributes:
+        on_news: is called for each line; from any thread.
     """
 
     def __init__(self) -> None:
+        self.on_news: Callable[[], object] = lambda: None
         self._lines: dict[str, None] = {}
-        self._new = ""
+        self._new = self._shown = ""
+        self._since: object = None
+        self._until = 0.0
 
     def __enter__(self) -> Self:
         _HELD.append(self)
@@ -105,15 +112,27 @@ class Held:
         self._new = text
         if len(self._lines) < _MOST_HELD:
             self._lines[text] = None
+        self.on_news()
 
-    def news(self) -> str:
-        """The newest line since the last call; empty if there is none."""
-        found, self._new = self._new, ""
-        return found
+    def over(self, message: str, now: object) -> str:
+        """What the screen says: the newest line, until it was read and a later round came.
+
+        Args:
+            message: what it says otherwise.
+            now: the last round.
+        """
+        if self._new:
+            self._shown, self._since, self._new = self._new, now, ""
+            self._until = time.monotonic() + _READ_S
+        if self._shown and (now is self._since or time.monotonic() < self._until):
+            return self._shown
+        shown, self._shown = self._shown, ""
+        return "" if message == shown else message
 
 
 _HELD: Final[list[Held]] = []
 _MOST_HELD: Final = 100
+_READ_S: Final = 3.0
 
 
 def print_stderr(text: str) -> None:

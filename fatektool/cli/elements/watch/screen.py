@@ -70,6 +70,7 @@ class WatchScreen:
                 return lambda: live.start(refresh=True)
 
             with terminal_keys(down) as keys:
+                held.on_news = keys.wake
                 self._reading = reading = Reading(
                     self._plc, self._read, self._pace, keys.wake, failed=self._rounds.fail
                 )
@@ -78,7 +79,7 @@ class WatchScreen:
                         while not (self._view.is_over or reading.is_over):
                             for key in keys.read():
                                 self._press(key, reading)
-                            self._view.message = held.news() or self._view.message
+                            self._view.message = held.over(self._view.message, reading.last)
                             show()
                 finally:
                     show(is_last=True)

@@ -87,10 +87,11 @@ class Screen:
 
             show()  # which networks fit is known before the first round
             with terminal_keys(down) as keys, self._rounds(keys) as reading:
+                held.on_news = keys.wake
                 while not (self._view.is_over or reading.is_over):
                     for key in keys.read():
                         self._view.press(key)
-                    self._view.message = held.news() or self._view.message
+                    self._view.message = held.over(self._view.message, reading.last)
                     show()
                 if reading.error is not None:
                     raise reading.error
