@@ -34,6 +34,7 @@ _ACROSS: Final = (10, 5, 2)
 """How many registers a row has, as far as they fit. The addresses are decimal."""
 
 _MOST_TENS: Final = 5
+_EMPTY: Final = '""'
 
 
 def terminal_lines(found: ItemValues, comments: Mapping[str, str], columns: int) -> Iterator[str]:
@@ -68,7 +69,7 @@ def _runs(items: Sequence[Item]) -> Iterator[list[Item]]:
 def _run_lines(run: Sequence[Item], found: ItemValues, columns: int) -> Iterator[str]:
     if run[0].type in TEXTS and all(found.raw[item.key] for item in run):
         words = [(int(found.raw[item.key] or "0", 16), item.element.kind.bits) for item in run]
-        yield f"{run[0].key}-{run[-1].key}  {shown(text_of(words, TEXTS[run[0].type]))}"
+        yield f"{run[0].key}-{run[-1].key}  {shown(text_of(words, TEXTS[run[0].type])) or _EMPTY}"
     elif run[0].type is ValueType.BOOL:
         yield from _bits(run, found.values, columns)
     else:

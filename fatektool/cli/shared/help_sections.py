@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 _ASKS: Final = {"yes", "broadcast", "dry_run"}
 """A command with one of these writes to the PLC: on others --read-only has no effect."""
 
+_WIDEST: Final = 24
+"""A longer option has a line of its own, so that the others leave room for what they mean."""
+
 _OPENS: Final = "trace"
 """A command with this opens a line."""
 
@@ -32,7 +35,7 @@ def write_options(command: click.Command, ctx: click.Context, formatter: click.H
     for heading, records in sections.items():
         if records:
             with formatter.section(heading):
-                formatter.write_dl(records)
+                formatter.write_dl(records, col_max=_WIDEST)
 
 
 def _shown(command: click.Command, ctx: click.Context) -> Iterator[click.Parameter]:

@@ -70,6 +70,7 @@ def test_discretes_are_bits_below_a_ruler() -> None:
 def test_text_is_one_text() -> None:
     assert screen("R0-R4:str", {"R0": 0x5250, "R1": 0x5345, "R2": 0x0053, "R3": 0x5858}) == ["R0-R4  PRESS"]
     assert screen("R0-R1:strh", {"R0": 0x4142, "R1": 0x1B00}) == ["R0-R1  AB\\x1b"]
+    assert screen("R0-R1:str", {}) == ['R0-R1  ""']
     assert screen("R0:str", {"R0": 0x4241}) == ["R0  AB"]
 
 
