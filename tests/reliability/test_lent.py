@@ -8,7 +8,7 @@ import select
 import signal
 import socket
 import threading
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from queue import SimpleQueue
 from typing import TYPE_CHECKING, Any
 
@@ -45,7 +45,7 @@ class Gateway:
             except OSError:  # closed
                 return
             self.served += 1
-            with client, socket.create_connection(self._inside) as plc:
+            with client, socket.create_connection(self._inside) as plc, suppress(ConnectionError):
                 other = {client: plc, plc: client}
                 while data := (ready := select.select([client, plc], [], [])[0][0]).recv(4096):
                     other[ready].sendall(data)
