@@ -10,6 +10,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+ROOT = Path(__file__).parent.parent
 ENTRY = "from fatektool.cli import main\nmain()\n"
 BY_NAME = ("fatektool", "pymodbus", "serial", "dulwich")
 LEFT_OUT = ("tkinter", "pytest", "hypothesis", "numpy", "PIL", "IPython", "matplotlib")
@@ -22,9 +23,9 @@ def main(folder: str = "dist") -> None:
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as work:
         entry = Path(work) / "entry.py"
         entry.write_text(ENTRY, encoding="utf-8")
-        words = ["--onefile", "--console", "--noconfirm", "--log-level", "WARN", "--name", "fatektool"]
+        words = ["--onefile", "--console", "--noconfirm", "--log-level", "INFO", "--name", "fatektool"]
         words += ["--distpath", folder, "--workpath", f"{work}/build", "--specpath", work]
-        words += ["--paths", str(Path(__file__).parent.parent), "--collect-data", "fatektool"]
+        words += ["--paths", str(ROOT), "--add-data", f"{ROOT / 'fatektool' / 'schemas'}:fatektool/schemas"]
         for name in BY_NAME:
             words += ["--collect-submodules", name]
         for name in LEFT_OUT:
