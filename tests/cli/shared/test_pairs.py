@@ -29,8 +29,8 @@ LINE = (
 VOICE = "--json --quiet --verbose"
 FREE = {
     "backup": "--data --single-pass --known --any-header --raw",
-    "verify": "--comments --report --force",
-    "restore": "--stop --run --changed-only --dry-run --single-pass --any-header --yes",
+    "verify": "--data --comments --report --force",
+    "restore": "--data --stop --run --changed-only --dry-run --single-pass --any-header --yes",
     "inspect": "--raw",
     "diff": "--comments --report --force",
     "listing": "--network --words --comments --report --force",
@@ -60,8 +60,8 @@ FREE = {
     "encode": "--as --error --data --number --protocol --station",
     "decode": "--protocol",
     "modbus map": "--modbus-map",
-    "fleet backup": "--news --dir --history --single-pass --any-header --on-change --prometheus --on-failure "
-    "--select --jobs --deadline",
+    "fleet backup": "--data --news --dir --history --single-pass --any-header --on-change --prometheus "
+    "--on-failure --select --jobs --deadline",
     "fleet check": "--prometheus --on-failure --select --jobs --deadline",
     "fleet snapshot": "--news --dir --keep --prometheus --on-failure --select --jobs --deadline",
     "fleet status": "--news --brief --prometheus --on-failure --select --jobs --deadline",
@@ -134,6 +134,9 @@ ALONE = [
     ("backup - -p sim:", "--force"),
     ("backup x.json -p sim: --single-pass", "--known old.json"),
     ("inspect old.json", "--force"),
+    ("restore old.json -p sim:", "--system"),
+    ("verify old.json -p sim:", "--ignore R0"),
+    ("diff old.json old.json", "--ignore R0"),
     ("history export x - --history h", "--force"),
     ("decode x.ndjson", "--as request"),
     (SNAPSHOT, "--group x"),
