@@ -376,7 +376,7 @@ def test_a_folder_that_may_only_be_read(door: Door, mortals: Mortals, words: lis
         life = mortals(*words, "-p", door.target, folder=folder, user=user, locks=locks)
         assert life.code == 2, life.err
         assert life.steps == [], "it was found out before anything was done"
-        assert "is not writable; choose another place" in life.err
+        assert "is not writable; choose another folder" in life.err
         assert names(folder) == ["new.json"]
         folder.chmod(0o755)
     assert door.pages == OLD.pages
