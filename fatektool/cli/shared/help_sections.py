@@ -19,7 +19,7 @@ _ASKS: Final = {"yes", "broadcast", "dry_run"}
 """A command with one of these writes to the PLC: on others --read-only has no effect."""
 
 _WIDEST: Final = 24
-"""A longer option has a line of its own, so that the others leave room for what they mean."""
+"""A longer option has its own line, so that the meanings of the others have enough columns."""
 
 _OPENS: Final = "trace"
 """A command with this opens a line."""
