@@ -6,7 +6,6 @@ lowest stations, at all settings too. Over a network there are stations alone.
 
 from __future__ import annotations
 
-import shlex
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
@@ -14,6 +13,7 @@ from fatektool.jobs.linetest.finding import Finding
 from fatektool.jobs.linetest.scan import scan
 from fatektool.jobs.linetest.scan_result import ScanResult, ScanSetting, Station
 from fatektool.protocol.line_settings import BAUDS, FORMATS
+from fatektool.system.shell import command_line
 from fatektool.transport.base import LineSettings
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def answers_elsewhere(plc: Plc, found: Station) -> Finding:
         fault=True,
         finding=f"station {found.station} answers{where}",
         evidence="one exchange of its brief status (40)",
-        advice=f"use: {shlex.join(words)}",
+        advice=f"use: {command_line(words)}",
     )
 
 
