@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 DOCS = (ROOT / "docs" / "history.md").read_text(encoding="utf-8")
 CHANGING = (
     (r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", "TIME"),
-    (r"(took +)(under 1 s|\d+ (s|min))\n", r"\1T\n"),
+    (r"(took +)(under 1 s|\d+ (s|min))( of simulated time)?\n", r"\1T\n"),
     (r"\b([0-9a-f]{40}|[0-9a-f]{10})\b", "HASH"),
     (r"fatektool \d[\w.]*", "VERSION"),
 )

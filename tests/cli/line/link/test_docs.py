@@ -35,7 +35,7 @@ def test_every_command_gives_what_is_shown(fbs: Plant, place: Path) -> None:
         assert done.code == 0, command
         text = done.out.replace(fbs.target, "sim:fbs.state")
         lines = text.splitlines()[: int(head)] if head else text.splitlines()
-        lines = ["took under 1 s" if line.startswith("took ") else line for line in lines]
+        lines = ["took under 1 s of simulated time" if line.startswith("took ") else line for line in lines]
         assert lines == expected.splitlines(), command
     assert (place / "again.toml").read_text(encoding="utf-8") == table
 
