@@ -389,7 +389,7 @@ def test_a_folder_that_may_only_be_read(door: Door, mortals: Mortals, words: lis
         (["backup", "x.json", "--raw", "x" * 300], "too long"),
         (["restore", "x" * 300, "--yes"], "too long"),
         (["restore", "new.json", "--yes", "--safety-dir", "x" * 300], "too long"),
-        (["backup", "loop"], "leads to itself"),
+        (["backup", "loop"], "symbolic link to itself"),
         (["restore", "loop", "--yes"], "symbolic links"),
         (["restore", "dangling", "--yes"], "No such file"),
         (["backup", "leading"], "exists already and is kept"),
