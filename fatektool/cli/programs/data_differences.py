@@ -10,6 +10,7 @@ from fatektool.cli.elements.values import shown_raw
 from fatektool.counts import counted
 from fatektool.jobs.elements.reads import named
 from fatektool.jobs.elements.spans import spans_of
+from fatektool.program.data.uses import Use, use_of
 from fatektool.protocol.values import raw_text
 
 if TYPE_CHECKING:
@@ -70,6 +71,8 @@ def _raw(each: ValueDifference, value: int | None) -> str | None:
 
 
 def _text(each: ValueDifference, value: int | None) -> str:
+    if value is not None and use_of(each.element.symbol, each.element.address) is Use.SETTING:
+        return raw_text(value, each.element.kind.bits)  # the parts of a setting are its digits
     return shown_raw(value, each.element.kind, "no value")
 
 

@@ -1,8 +1,8 @@
 """What elements are for: which a PLC keeps without power, which are settings, which nothing may write.
 
-The ranges are the defaults of the FBs-PLC User's Manual [E:kept] and of its chapter on links; what
-is kept without power can be set up otherwise in the PLC's program. They decide what is read twice, what is
-compared, and what a restore writes; so what is in no range is taken for kept.
+The ranges are, as far as known, the defaults of the FBs-PLC User's Manual [E:kept] and of its chapter on
+links; what is kept without power can be set up otherwise in the program. They decide what is read twice,
+what is compared, and what a restore writes; so what is in no range is taken for kept.
 """
 
 from __future__ import annotations

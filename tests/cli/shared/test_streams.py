@@ -296,7 +296,7 @@ def test_a_program_is_read_from_standard_input(press: Press) -> None:
 def test_standard_input_that_is_empty(words: str) -> None:
     done = fed(words, b"")
     assert done.code == 2
-    assert "standard input is empty; name it once" in done.err
+    assert "standard input is empty; use - only once" in done.err
 
 
 @pytest.mark.skipif(shutil.which("gzip") is None, reason="needs gzip")
