@@ -13,7 +13,7 @@ from pathlib import Path
 ROOT = Path(__file__).parent.parent
 ENTRY = "from fatektool.cli import main\nmain()\n"
 BY_NAME = ("fatektool", "pymodbus", "serial", "dulwich")
-LEFT_OUT = ("tkinter", "pytest", "hypothesis", "numpy", "PIL", "IPython", "matplotlib")
+LEFT_OUT = ("dulwich.tests", "tkinter", "pytest", "hypothesis", "numpy", "PIL", "IPython", "matplotlib")
 
 
 def main(folder: str = "dist") -> None:

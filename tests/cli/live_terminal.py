@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
 import signal
 import struct
-import termios
 from typing import TYPE_CHECKING
 
 import pyte
+import pytest
 
 from tests.cli.terminal import Terminal
+
+if os.name != "posix":
+    pytest.skip("POSIX alone: pseudo terminals", allow_module_level=True)
+
+import fcntl
+import termios
 
 if TYPE_CHECKING:
     from collections.abc import Callable

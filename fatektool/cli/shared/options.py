@@ -50,10 +50,7 @@ class FilePath(click.Path):
         """Make one of what was given."""
         from pathlib import Path
 
-        name = standard(os.fspath(value))
-        if "\0" in name:
-            self.fail(f"{name!r} is not a file name")
-        return Path(name)
+        return Path(standard(os.fspath(value)))
 
 
 PATH = FilePath()

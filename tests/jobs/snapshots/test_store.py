@@ -165,6 +165,8 @@ def test_refused_elements_are_saved_too(plant: Plant, place: Path) -> None:
 def test_a_wrong_place_is_refused_before_a_byte_is_sent(
     plant: Plant, place: Path, monkeypatch: pytest.MonkeyPatch, words: list[str]
 ) -> None:
+    if os.name == "nt" and "x\0y" in words:
+        pytest.skip("a command line of Windows has no such word")
     (place / "notes.txt").write_text("do not lose me\n")
     (place / "whole.json").write_text(as_json(TAKEN))
     (place / "backup.json").write_text('{\n  "schema": "fatektool.backup/1"')
@@ -283,6 +285,7 @@ def test_a_full_disk_takes_the_half_line_back(
     assert len(lines(path)) == 2
 
 
+@posix
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
 def test_standard_output_on_a_full_disk(plant: Plant) -> None:
     done = process("snapshot", "R0", "-p", plant.target, redirect="> /dev/full")
