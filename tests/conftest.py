@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import os
 import secrets
+import signal
 from itertools import count
 from typing import TYPE_CHECKING, Any
 
@@ -49,6 +50,8 @@ def _looks_for_new_cases(config: pytest.Config) -> bool:
 def pytest_configure(config: pytest.Config) -> None:
     if not hasattr(config, "workerinput"):
         keep_compiled()
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # in the background; tests interrupt processes
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     random = _looks_for_new_cases(config)
     if random:
         os.environ[AT_NIGHT] = "1"

@@ -148,8 +148,9 @@ def keep(line: socket.socket) -> None:
 def serve(path: str) -> None:
     """Make children until standard input ends."""
     listening = socket.socket(socket.AF_UNIX)
-    listening.bind(path)
+    listening.bind(f"{path}.new")
     listening.listen(64)
+    os.rename(f"{path}.new", path)  # noqa: PTH104  # one that does not listen yet refuses
     load_all()
     poll = select.poll()
     for each in (listening.fileno(), 0):
