@@ -106,7 +106,7 @@ def restore_command(
         writing.require_answer(changes=plan.changes)
         ask = _Question(writing, plan, here, backup, pace)
         offer = ask.offer([("file", file), ("from", origin)], plc)
-        result = _nothing_done(plan) if terms.dry_run else _carry_out(plc, plan, file, offer, bar)
+        result = _nothing_done(plan) if terms.dry_run else _carry_out(plc, plan, file, offer, pace, bar=bar)
         for warning in result.warnings[len(plan.warnings) :]:
             voice.warn(warning)
         document = restore_document(
@@ -207,11 +207,14 @@ def _pages_lines(written: int, differ: int, count: int) -> Iterator[str]:
         yield f"--changed-only writes only the {those}."
 
 
-def _carry_out(plc: Plc, plan: RestorePlan, file: Path, offer: Offer, bar: ProgressBar) -> RestoreResult:
+def _carry_out(
+    plc: Plc, plan: RestorePlan, file: Path, offer: Offer, pace: ExchangeTime, *, bar: ProgressBar
+) -> RestoreResult:
     """Save the previous program, ask, and restore."""
 
     def agree(copy: Path | None) -> None:
-        offer.agree(copy)
+        with pace.stopped():
+            offer.agree(copy)
         bar.go_on()
 
     wanted = None if plan.data is None else plan.data.wanted

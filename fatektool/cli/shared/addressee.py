@@ -16,6 +16,7 @@ shown before it is agreed to.
 from __future__ import annotations
 
 import sys
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -125,6 +126,15 @@ class ExchangeTime:
     def passed_s(self) -> float:
         """Seconds since it began."""
         return self._link.transport.clock() - self._began
+
+    @contextmanager
+    def stopped(self) -> Iterator[None]:
+        """Do not count what happens within, as a question waits for a person."""
+        began = self._link.transport.clock()
+        try:
+            yield
+        finally:
+            self._began += self._link.transport.clock() - began
 
     @property
     def passed(self) -> str:

@@ -13,6 +13,7 @@ from fatektool.protocol.values import raw_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
+    from pathlib import Path
 
     from fatektool.client import Plc
     from fatektool.jobs.elements.planned import RegisterChange
@@ -45,13 +46,14 @@ def offer_of(
     return Offer(writing, here, [*rows, *time], [*lines], question, "values")
 
 
-def put_values(plc: Plc, plan: ValuesPlan, offer: Offer, name: str) -> Written:
+def put_values(plc: Plc, plan: ValuesPlan, offer: Offer, pace: ExchangeTime, name: str) -> Written:
     """Save, ask, write and read back, unless nothing differs or it is a dry run.
 
     Args:
         plc: the PLC.
         plan: of this PLC, just now.
         offer: shows it and asks.
+        pace: counts the time, but for that of the question.
         name: what the safety snapshot's name begins with.
 
     Raises:
@@ -65,8 +67,13 @@ def put_values(plc: Plc, plan: ValuesPlan, offer: Offer, name: str) -> Written:
         return done
     if plan.changes:
         copy = SafetySnapshot(plan, name, writing.folder, writing.earlier_copy)
+
+        def agree(saved: Path | None) -> None:
+            with pace.stopped():
+                offer.agree(saved)
+
         with offer.carry_out() as mark:
-            done = write_values(plc, plan, copy, offer.agree, rollback=writing.terms.rollback, mark=mark)
+            done = write_values(plc, plan, copy, agree, rollback=writing.terms.rollback, mark=mark)
     else:
         writing.forget()
     return done

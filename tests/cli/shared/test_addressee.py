@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from fatektool.cli.shared.addressee import Addressee, Origin
+from fatektool.cli.shared.addressee import Addressee, ExchangeTime, Origin
 from fatektool.cli.shared.output import Voice
+from fatektool.connection import connect
 from fatektool.counts import spent
 from fatektool.program.archive import save_backup
 from tests.cli.running import NEW, served
@@ -50,6 +51,19 @@ def test_a_snapshot_of_another_plc_is_a_warning(press: Press, cli: Cli) -> None:
         document = done.document("apply")
     assert (document["model"], document["mode"]) == ("FBE, 13K steps", "stop")
     assert document["source"]["target"] == press.target
+
+
+def test_the_time_that_a_question_waits_is_not_counted() -> None:
+    with connect("sim:") as plc:
+        pace = ExchangeTime(plc)
+        plc.brief_status()
+        before_s = pace.passed_s
+        assert before_s > 0
+        with pace.stopped():
+            plc.brief_status()
+        assert pace.passed_s == pytest.approx(before_s)
+        plc.brief_status()
+        assert pace.passed_s > before_s
 
 
 def test_one_line_by_two_names_is_no_other_plc(press: Press, cli: Cli) -> None:

@@ -58,7 +58,7 @@ def apply_command(
         rows = [("file", file), ("from", origin)]
         offer = offer_of(plc, plan.values, writing, pace, rows=rows, lines=_plan_lines(plan, snapshot))
         origin.warn_unless_from(offer.here, file, voice)
-        done = put_values(plc, plan.values, offer, file.stem)
+        done = put_values(plc, plan.values, offer, pace, file.stem)
         document = apply_document(plc, file, snapshot, plan, done, dry_run=terms.dry_run)
     if not terms.dry_run and not only:
         forget_those_undone(connection.address.target, connection.address.station, file, voice)

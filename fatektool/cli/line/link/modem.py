@@ -111,7 +111,7 @@ def set_command(
         for warning in host.warnings():
             voice.warn(warning)
         offer = offer_of(plc, plan, writing, pace, rows=[], lines=map(change_line, plan.changes))
-        done = put_values(plc, plan, offer, "modem")
+        done = put_values(plc, plan, offer, pace, "modem")
         report = read_modem(plc)
         changes = changes_document(plan, done, dry_run=terms.dry_run)
         document = modem_document(plc, report, host, changes)

@@ -74,7 +74,7 @@ def write_command(
             voice.warn("the PLC is in RUN: an instruction may use the table while it is half new")
         rows = [("file", file), ("to", f"{start}, {counted(len(words), 'register')}")]
         offer = offer_of(plc, plan, writing, pace, rows=rows, lines=table_lines(table, faults))
-        done = put_values(plc, plan, offer, file.stem)
+        done = put_values(plc, plan, offer, pace, file.stem)
         changes = changes_document(plan, done, dry_run=terms.dry_run)
         document = table_write_document(plc, file, start, changes, table=table, faults=faults, host=host)
     document |= offer.here.document()
