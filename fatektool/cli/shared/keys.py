@@ -122,7 +122,9 @@ class PosixKeys:
         from select import select
 
         sources = [self._woken] if self._input is None else [self._woken, self._input]
-        ready, _, _ = select(sources, [], [])
+        ready: list[int] = []
+        while not ready:  # a signal that comes just before a wait does not interrupt it
+            ready, _, _ = select(sources, [], [], _LOOK_S)
         if self._woken in ready:
             os.read(self._woken, 4096)
         if self._is_to_stop:

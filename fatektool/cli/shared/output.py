@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from fatektool.jobs.progress import Progress
 
 
+_LOOK_S: Final = 0.2
+
 _FEW: Final = 200
 """So many elements take no more than a second or two."""
 
@@ -135,6 +137,19 @@ _MOST_HELD: Final = 100
 _READ_S: Final = 3.0
 
 
+def _wait_for_line() -> None:
+    """Wait for an answer at the terminal, and let Ctrl-C end that.
+
+    A signal that comes just before a read does not interrupt it: so the read begins when there is a line.
+    """
+    if sys.platform == "win32":
+        return
+    from select import select
+
+    while not select([sys.stdin], [], [], _LOOK_S)[0]:
+        pass
+
+
 def print_stderr(text: str) -> None:
     """Print a line on stderr. An error is ignored: a write into a PLC must go on without a reader."""
     if _HELD and sys.stderr.isatty():
@@ -204,6 +219,7 @@ class Voice:
             return True
         while True:
             click.echo(f"{visible(question)} [y/N]: ", nl=False, err=True)
+            _wait_for_line()
             answer = sys.stdin.readline()
             if not answer:  # ^D, or the terminal is gone
                 print_stderr("")

@@ -173,20 +173,6 @@ def test_a_terminal_with_ascii_alone() -> None:
     assert terminal.raw.isascii()
 
 
-def test_a_warning_does_not_break_the_table() -> None:
-    """A line that is slow is warned of: on the screen, and again behind it."""
-    with watched("R0-R3", "--timeout", "0.05", "--retries", "3") as (terminal, door):
-        line = door.simulation
-        line.scan_s = 0.2
-        terminal.until("answers are late")
-        line.scan_s = 0.0
-        lines = terminal.until(lambda lines: "LINE LOST" not in "".join(lines) and "STOP" in "".join(lines))
-        assert sum(line.startswith("element") for line in lines) == 1
-        terminal.type("q")
-        assert terminal.end() == 0
-    assert terminal.text.rstrip().rpartition("\n")[2].startswith("warning: answers are late")
-
-
 @given(st.lists(st.sampled_from(["down", "up", "pgdn", "pgup", "home", "end", *"wRyn 5=q", "enter", "esc"])))
 def test_any_keys(keys: list[str]) -> None:
     """Only y behind a question writes; all else stays within the elements."""
