@@ -146,8 +146,9 @@ def _wait_for_line() -> None:
         return
     from select import select
 
-    while not select([sys.stdin], [], [], _LOOK_S)[0]:
-        pass
+    with contextlib.suppress(OSError, ValueError):  # it is no file of the system
+        while not select([sys.stdin], [], [], _LOOK_S)[0]:
+            pass
 
 
 def print_stderr(text: str) -> None:
