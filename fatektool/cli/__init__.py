@@ -5,8 +5,6 @@ One file a command; each is loaded when its command is used.
 
 from __future__ import annotations
 
-import contextlib
-import errno
 import os
 import sys
 import warnings
@@ -16,8 +14,8 @@ import click
 
 from fatektool.cli.shared.output import print_json, print_stderr, with_prefix
 from fatektool.cli.shared.stops import end_cleanly
-from fatektool.cli.shared.streams import is_closed_pipe, mend_streams, reader_is_gone
-from fatektool.errors import DataError, FatektoolError, FileWarning, UsageError
+from fatektool.cli.shared.streams import is_closed_pipe, lost_output, mend_streams, output_loss
+from fatektool.errors import FatektoolError, FileWarning, UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,19 +24,12 @@ INTERRUPTED = 130
 CUT_SHORT = 141
 """The exit code of a program that wrote to a closed pipe, as shells report it."""
 
-_OUTPUT_LOST = {errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EFBIG, errno.EBADF}
-
 
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
     """Run the command line and end the process with its exit code."""
     words = list(sys.argv[1:] if arguments is None else arguments)
     mend_streams()
-    code = run(words)
-    try:
-        sys.stdout.flush()
-    except OSError:
-        _drop_output()
-    sys.exit(CUT_SHORT if not code and reader_is_gone() else code)
+    sys.exit(run(words))
 
 
 def run(words: list[str]) -> int:
@@ -46,7 +37,18 @@ def run(words: list[str]) -> int:
     with warnings.catch_warnings():
         warnings.simplefilter("default", FileWarning)
         warnings.showwarning = _show_warning
-        return _run(words)
+        return _after_loss(_run(words), as_json="--json" in words)
+
+
+def _after_loss(code: int, *, as_json: bool) -> int:
+    """The exit code, which is no success if what was printed is lost."""
+    sys.stdout.flush()
+    loss = output_loss()
+    if loss is None or code > 1:
+        return code
+    if is_closed_pipe(loss):
+        return code or CUT_SHORT
+    return failed(lost_output(loss), as_json=as_json)
 
 
 def _show_warning(  # noqa: PLR0917  # the signature of warnings.showwarning
@@ -64,7 +66,7 @@ def _show_warning(  # noqa: PLR0917  # the signature of warnings.showwarning
         print_stderr(warnings.formatwarning(message, category, filename, lineno, line))
 
 
-def _run(words: list[str]) -> int:  # noqa: PLR0911  # a way out a class of error
+def _run(words: list[str]) -> int:
     end_cleanly()
     as_json = "--json" in words
     try:
@@ -78,12 +80,6 @@ def _run(words: list[str]) -> int:  # noqa: PLR0911  # a way out a class of erro
             print_stderr("")  # the terminal shows ^C, and no new line
         return failed(Interrupted(": ".join(["interrupted", *map(str, stop.args)])), as_json=as_json)
     except Exception as error:  # whatever it is: no traceback for the user
-        if is_closed_pipe(error):  # a pipe of somebody else's
-            _drop_output()
-            return CUT_SHORT
-        if isinstance(error, OSError) and error.errno in _OUTPUT_LOST and error.filename is None:
-            _drop_output()
-            return failed(_output_lost(error), as_json=as_json)
         if os.environ.get("FATEKTOOL_TRACEBACK"):
             raise
         return failed(_fault(error), as_json=as_json)
@@ -120,8 +116,7 @@ def failed(error: FatektoolError, *, as_json: bool) -> int:
     if as_json:
         from fatektool.cli.shared.documents import error_document
 
-        with contextlib.suppress(OSError):
-            print_json(error_document(error))
+        print_json(error_document(error))
     for number, line in enumerate(error.lines or [" ".join(str(error).split())]):
         print_stderr(line if number else with_prefix("fatektool:", line, bad=True))
     return error.exit_code
@@ -142,17 +137,3 @@ def _fault(error: Exception) -> FatektoolError:
         f"a fault of fatektool itself: {type(error).__name__}: {error}",
         hint="please report it with the command line; FATEKTOOL_TRACEBACK=1 shows where it happened",
     )
-
-
-def _output_lost(error: OSError) -> FatektoolError:
-    return DataError(
-        f"standard output cannot be written: {error.strerror}",
-        hint="free some space or name another place, and run it again",
-    )
-
-
-def _drop_output() -> None:
-    """Let what is still to be written to stdout go nowhere."""
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, sys.stdout.fileno())
-    os.close(nowhere)

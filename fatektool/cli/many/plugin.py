@@ -6,14 +6,14 @@
 
 from __future__ import annotations
 
-import contextlib
+import sys
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from fatektool.cli.many.documents import check_document
-from fatektool.cli.shared.output import print_json
-from fatektool.cli.shared.streams import is_closed_pipe
+from fatektool.cli.shared.output import print_json, print_stderr, with_prefix
+from fatektool.cli.shared.streams import is_closed_pipe, lost_output, output_loss
 from fatektool.errors import FatektoolError
 from fatektool.jobs.check.result import State
 
@@ -36,9 +36,18 @@ class PluginCommand(click.Command):
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run it; every error is UNKNOWN."""
-        as_json = bool(ctx.params.get("as_json"))
+        state = self._state(ctx, as_json=bool(ctx.params.get("as_json")))
+        sys.stdout.flush()
+        loss = output_loss()
+        if loss is None:
+            return state
+        if not is_closed_pipe(loss):
+            print_stderr(with_prefix("fatektool:", str(lost_output(loss)), bad=True))
+        return state if state == State.CRITICAL else int(State.UNKNOWN)
+
+    def _state(self, ctx: click.Context, *, as_json: bool) -> int:
         try:
-            return super().invoke(ctx)
+            return int(super().invoke(ctx))
         except click.exceptions.Exit:
             raise
         except FatektoolError as error:
@@ -47,9 +56,7 @@ class PluginCommand(click.Command):
             return unknown(error.format_message(), as_json=as_json)
         except (click.Abort, KeyboardInterrupt):
             return unknown("interrupted", as_json=as_json)
-        except Exception as error:  # no traceback, as in the other commands
-            if is_closed_pipe(error):
-                raise
+        except Exception as error:  # noqa: BLE001  # no traceback, as in the other commands
             words = f"a fault of fatektool itself: {type(error).__name__}: {error}"
             return unknown(words, as_json=as_json)
 
@@ -63,9 +70,8 @@ def plugin_line(state: State, words: str, figures: Mapping[str, str]) -> str:
 
 def unknown(words: str, *, as_json: bool) -> int:
     """Print UNKNOWN with its reason; give the exit code."""
-    with contextlib.suppress(OSError):
-        if as_json:
-            print_json(check_document(State.UNKNOWN, words, None))
-        else:
-            click.echo(plugin_line(State.UNKNOWN, words, {}))
+    if as_json:
+        print_json(check_document(State.UNKNOWN, words, None))
+    else:
+        click.echo(plugin_line(State.UNKNOWN, words, {}))
     return int(State.UNKNOWN)

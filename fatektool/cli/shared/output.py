@@ -152,12 +152,11 @@ def _wait_for_line() -> None:
 
 
 def print_stderr(text: str) -> None:
-    """Print a line on stderr. An error is ignored: a write into a PLC must go on without a reader."""
+    """Print a line on stderr."""
     if _HELD and sys.stderr.isatty():
         _HELD[-1].take(text)
         return
-    with contextlib.suppress(OSError):
-        click.echo(written(text, sys.stderr), err=True, color=True)
+    click.echo(written(text, sys.stderr), err=True, color=True)
 
 
 def print_json(document: dict[str, Any]) -> None:

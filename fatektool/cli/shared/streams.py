@@ -1,8 +1,12 @@
-"""The standard streams, made fit for data: UTF-8 wherever it goes, and an end of reading that ends no work.
+"""The standard streams, made fit for data: UTF-8 wherever it goes, and no stream that fails ends any work.
 
 What is redirected is data for programs, and is UTF-8 with plain line ends whatever the locale says. On a
 terminal words take its encoding. A character that it lacks is shown as one that looks like it, else
 as a code. So is it on stderr.
+
+If standard output cannot be written any more (its reader is gone, the disk is full), the command goes on, and
+its exit code is changed at its end. If standard error cannot be written, nothing is changed: the message is
+lost. A stream that a shell closed is as ``/dev/null``, but for a file that was to go to standard output.
 """
 
 from __future__ import annotations
@@ -12,7 +16,12 @@ import errno
 import io
 import os
 import sys
-from typing import Final
+from typing import TYPE_CHECKING, Final
+
+from fatektool.errors import DataError
+
+if TYPE_CHECKING:
+    from _typeshed import ReadableBuffer
 
 _WINDOWS: Final = os.name == "nt"
 _SHOWN: Final = "fatektool.shown"
@@ -37,72 +46,127 @@ def is_closed_pipe(error: BaseException) -> bool:
 
 
 class Output(io.TextIOWrapper):
-    """Standard output that can be written also after its reader is gone: ``cut`` is true then."""
+    """Standard output that takes text also when it cannot be written any more.
 
-    cut = False
+    Attributes:
+        loss: why what was printed is not where it ought to be; None if it is.
+        stands_in: True in place of a standard output that is closed.
+    """
+
+    loss: OSError | None = None
+    stands_in = False
 
     def write(self, text: str) -> int:
         """Write text."""
         try:
             return super().write(text)
         except OSError as error:
-            self.lost(error)
+            self.lose(error)
             return len(text)
 
     def flush(self) -> None:
-        """Hand on what is kept back."""
+        """Write what is buffered."""
         try:
             super().flush()
         except OSError as error:
-            self.lost(error)
+            self.lose(error)
 
-    def lost(self, error: OSError) -> None:
-        """Let all that is still to come go nowhere, if it is the reader that is gone.
-
-        Raises:
-            OSError: it is another fault.
-        """
-        if not is_closed_pipe(error):
-            raise error
-        self.cut = True
+    def lose(self, error: OSError) -> None:
+        """Discard all that is buffered and all that is still to come."""
+        if self.loss is None:
+            self.loss = error
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, self.fileno())
         os.close(nowhere)
 
 
+class Unheard(io.RawIOBase):
+    """Bytes of standard error: those that cannot be written are discarded, the next ones are tried again.
+
+    So no message stops the work that it is about. Python finds nothing at its end that it cannot write, for
+    which it would change the exit code to 120.
+
+    Args:
+        raw: what is written to.
+    """
+
+    def __init__(self, raw: io.RawIOBase) -> None:
+        self._raw = raw
+
+    def writable(self) -> bool:
+        """True."""
+        return True
+
+    def fileno(self) -> int:
+        """The descriptor of standard error."""
+        return self._raw.fileno()
+
+    def isatty(self) -> bool:
+        """True on a terminal."""
+        return self._raw.isatty()
+
+    def write(self, data: ReadableBuffer) -> int:
+        """Write bytes, as far as that is possible."""
+        size = memoryview(data).nbytes
+        try:
+            return self._raw.write(data) or size
+        except OSError:
+            return size
+
+
 def print_bytes(data: bytes) -> None:
-    """Print data as they are on standard output."""
+    """Print the bytes of a file on standard output, which is its only place: it must not be closed."""
     out = sys.stdout
     out.flush()
+    if isinstance(out, Output) and out.stands_in:
+        out.lose(OSError(errno.EBADF, os.strerror(errno.EBADF)))
     try:
         out.buffer.write(data)
         out.buffer.flush()
     except OSError as error:
         if not isinstance(out, Output):
             raise
-        out.lost(error)
+        out.lose(error)
 
 
 def mend_streams() -> None:
-    """Stand in for standard streams that are closed; let no character be one that cannot be printed."""
-    out = sys.stdout
-    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
-        if getattr(sys, name) is None:
-            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: PTH123, SIM115  # stays open
-    if isinstance(sys.stderr, io.TextIOWrapper):
-        sys.stderr.reconfigure(errors=_SHOWN)
-    if isinstance(out, io.TextIOWrapper):
-        terminal = out.isatty()
-        raw = open(out.fileno(), "wb", buffering=0, closefd=False)  # noqa: SIM115  # of the console on Windows
-        sys.stdout = Output(
-            io.BufferedWriter(raw),
-            out.encoding if terminal else "utf-8",
-            _SHOWN,
-            newline=None if terminal else "\n",
-            line_buffering=terminal,
+    """Put streams that can always be written in place of the standard ones, also of those that are closed."""
+    out, err = sys.stdout, sys.stderr
+    for name, mode in (("stdin", os.O_RDONLY), ("stdout", os.O_WRONLY), ("stderr", os.O_WRONLY)):
+        if getattr(sys, name) is None:  # what is opened next must not get its descriptor
+            null = os.open(os.devnull, mode)  # stays open
+            setattr(sys, name, open(null, "w" if mode else "r", encoding="utf-8", closefd=False))  # noqa: SIM115
+    if isinstance(err, io.TextIOWrapper):
+        raw = open(err.fileno(), "wb", buffering=0, closefd=False)  # noqa: SIM115  # of the console on Windows
+        sys.stderr = io.TextIOWrapper(
+            io.BufferedWriter(Unheard(raw)), err.encoding, _SHOWN, line_buffering=True
         )
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        is_terminal = sys.stdout.isatty()
+        raw = open(sys.stdout.fileno(), "wb", buffering=0, closefd=False)  # noqa: SIM115
+        made = Output(
+            io.BufferedWriter(raw),
+            sys.stdout.encoding if is_terminal else "utf-8",
+            _SHOWN,
+            newline=None if is_terminal else "\n",
+            line_buffering=is_terminal,
+        )
+        made.stands_in = out is None
+        sys.stdout = made
 
 
-def reader_is_gone() -> bool:
-    """True if the reader of standard output is gone: a command that prints without end can end."""
-    return isinstance(sys.stdout, Output) and sys.stdout.cut
+def output_loss() -> OSError | None:
+    """Why standard output cannot be written any more, on which an endless command ends; None if it can."""
+    return sys.stdout.loss if isinstance(sys.stdout, Output) else None
+
+
+def lost_output(loss: OSError) -> DataError:
+    """What a user reads of such a loss."""
+    if loss.errno == errno.EBADF:
+        return DataError(
+            "standard output is closed: nothing was written to it", hint="redirect it, or name a file"
+        )
+    return DataError(
+        f"standard output cannot be written: {loss.strerror}",
+        hint="free some space or name another place, and run it again",
+    )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import io
 import json
 import os
 import re
@@ -9,14 +11,19 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
+from fatektool.cli.shared.streams import Unheard
 from fatektool.program.archive import Backup, load_backup
 from fatektool.simulator.build import build_simulation
 from tests.cli.running import OLD, Done, Press, environment, one_line, process, started
 from tests.forks.command import COMMAND, PIPE, Forked
 from tests.forks.shell import path as shell_path
+
+if TYPE_CHECKING:
+    from _typeshed import ReadableBuffer
 
 CLOSED = {">&-": [1], "2>&-": [2], "<&-": [0], ">&- 2>&- <&-": [0, 1, 2]}
 """Redirections of a shell, as descriptors that a process has not."""
@@ -39,14 +46,21 @@ def redirected(*words: object, redirect: str = "", given: bytes = b"") -> Done:
     return Done(command.wait(), *((data or b"").decode() for data in (out, err)))
 
 
-def unread(*words: object, **more: str) -> Done:
-    """Run a command whose standard output nobody reads."""
+def unread(*words: object, stream: str = "stdout", **more: str) -> Done:
+    """Run a command of whose streams nobody reads this one."""
     reader, writer = os.pipe()
     os.close(reader)
-    with Forked(words, stdout=writer, stderr=PIPE, environment=environment(**more)) as command:
+    out, err = (writer, PIPE) if stream == "stdout" else (PIPE, writer)
+    with Forked(words, stdout=out, stderr=err, environment=environment(**more)) as command:
         os.close(writer)
-        _, err = command.communicate()
-    return Done(command.wait(), "", err)
+        texts = command.communicate()
+    return Done(command.wait(), *(text or "" for text in texts))
+
+
+@pytest.fixture(params=["", "1"], ids=["buffered", "unbuffered"])
+def buffering(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Python keeps what it cannot write, and tries it again at its end; or not."""
+    monkeypatch.setenv("PYTHONUNBUFFERED", request.param)
 
 
 def test_a_backup_to_stdout_is_the_file(press: Press) -> None:
@@ -214,36 +228,113 @@ def test_help_on_a_full_disk(words: list[str]) -> None:
     assert redirected(*words, redirect=FULL).code == 5
 
 
+REDIRECTIONS = (FULL, "2> /dev/full", ">&-", "2>&-", "> /dev/full 2>&1", ">&- 2>&- <&-")
+
+
+@pytest.mark.usefixtures("buffering")
 def test_an_error_keeps_its_exit_code_wherever_its_words_go(press: Press) -> None:
-    for redirect in (FULL, "2> /dev/full", ">&-", "2>&-", "> /dev/full 2>&1", ">&- 2>&- <&-"):
-        for option in ([], ["--json"]):
-            done = redirected("restore", press.new, "-p", press.target, *option, redirect=redirect)
+    refused, nowhere = ("restore", press.new, "-p", press.target), ("status", "-p", "/dev/nope")
+    for option in ([], ["--json"]):
+        for redirect in REDIRECTIONS:
+            done = redirected(*refused, *option, redirect=redirect)
             assert done.code == 2, redirect
             assert "Traceback" not in done.err
-            assert redirected("status", "-p", "/dev/nope", *option, redirect=redirect).code == 3, redirect
+            assert redirected(*nowhere, *option, redirect=redirect).code == 3, redirect
+        for stream in ("stdout", "stderr"):
+            assert unread(*refused, *option, stream=stream).code == 2, stream
+            assert unread(*nowhere, *option, stream=stream).code == 3, stream
 
 
+@pytest.mark.usefixtures("buffering")
 def test_closed_streams_stop_no_command(press: Press) -> None:
     for number, redirect in enumerate((">&-", "2>&-", "<&-", ">&- 2>&- <&-", "2> /dev/full")):
         assert redirected("backup", f"{number}.json", "-p", press.target, redirect=redirect).code == 0
         assert load_backup(Path(f"{number}.json")).program == OLD
 
 
+@pytest.mark.usefixtures("buffering")
+@pytest.mark.parametrize("others", ["", " 2>&- <&-"])
+def test_a_closed_stdout_is_as_dev_null_but_for_a_file(press: Press, others: str) -> None:
+    """As git has it; a file that was to go there is nowhere, and that is no success."""
+    for words, code in {
+        "status": 0,
+        "status --json": 0,
+        "verify old.json": 0,
+        "verify new.json --json": 1,
+        "check --expect any": 0,
+        "backup -": 5,
+        "backup - --json": 5,
+    }.items():
+        done = redirected(*words.split(), "-p", press.target, redirect=f">&-{others}")
+        assert done.code == code, words
+        if code == 5 and not others:
+            assert one_line(done.err).startswith("fatektool: standard output is closed: nothing was written")
+
+
+def test_a_plugin_keeps_its_codes_wherever_its_words_go() -> None:
+    for expected, code in (("any", 3), ("stop", 3), ("run", 2)):
+        words = ("check", "-p", "sim:", "--expect", expected)
+        assert unread(*words) == (code, "", "")
+        done = redirected(*words, redirect=FULL)
+        assert (done.code, "No space left on device" in one_line(done.err)) == (code, True)
+        assert redirected(*words, redirect="2> /dev/full").code == (2 if expected == "run" else 0)
+    assert unread("check", "-p", "/dev/nope").code == 2
+
+
+@pytest.mark.usefixtures("buffering")
 def test_streams_that_a_shell_closes_and_fills(press: Press) -> None:
     """As above, in interpreters of their own, which start without them."""
     assert process("backup", "x.json", "-p", press.target, redirect=">&- 2>&- <&-").code == 0
     assert load_backup(Path("x.json")).program == OLD
     assert process("restore", press.new, "-p", press.target, redirect="> /dev/full 2>&1").code == 2
+    assert process("restore", press.new, "-p", press.target, redirect="2> >(true)").code == 2
     done = process("status", "-p", press.target, redirect=FULL)
     assert (done.code, one_line(done.err)[:39]) == (5, "fatektool: standard output cannot be wr")
+    done = process("backup", "-", "-p", press.target, redirect=">&-")
+    assert (done.code, one_line(done.err)[:36]) == (5, "fatektool: standard output is closed")
 
 
+@pytest.mark.usefixtures("buffering")
 def test_a_restore_goes_on_when_nobody_hears_it(press: Press) -> None:
-    for redirect in ("2> /dev/full", "2>&-"):
+    for redirect, code in (("2> /dev/full", 0), ("2>&-", 0), (FULL, 5), (">&-", 0)):
         for file in (press.new, press.old):
             done = redirected("restore", file, "-p", press.target, "--yes", "-v", redirect=redirect)
-            assert done.code == 0
+            assert done.code == code
             assert press.program == load_backup(file).program
+
+
+def test_a_fleet_goes_on_when_its_words_are_lost(press: Press) -> None:
+    names = ("one", "two", "three")
+    tables = (f"[plc.{name}]\ntarget = '{press.target}-{name}'\n" for name in names)
+    Path("fatek.toml").write_text("".join(tables))
+    assert redirected("fleet", "backup", "--dir", "backups", redirect=FULL).code == 5
+    assert {path.stem for path in Path("backups").glob("*.json")} == set(names)
+
+
+class FullOnce(io.RawIOBase):
+    """A file on a disk that is full at the first write."""
+
+    def __init__(self) -> None:
+        self.written: list[bytes] = []
+        self._is_full = True
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, data: ReadableBuffer) -> int:
+        if self._is_full:
+            self._is_full = False
+            raise OSError(errno.ENOSPC, "No space left on device")
+        self.written.append(bytes(data))
+        return len(self.written[-1])
+
+
+def test_a_message_that_is_lost_stops_no_later_one() -> None:
+    disk = FullOnce()
+    stream = io.TextIOWrapper(io.BufferedWriter(Unheard(disk)), "utf-8", line_buffering=True)
+    for word in ("one", "two", "three"):
+        stream.write(f"{word}\n")
+    assert disk.written == [b"two\n", b"three\n"]
 
 
 @pytest.mark.parametrize("unbuffered", ["", "1"])

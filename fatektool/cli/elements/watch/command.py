@@ -18,7 +18,7 @@ from fatektool.cli.shared.modbus_map import modbus_map_option
 from fatektool.cli.shared.options import SecondsType, completing
 from fatektool.cli.shared.report import report_option, watch_report
 from fatektool.cli.shared.rounds import RoundTimes, failed_in_line, paced_rounds
-from fatektool.cli.shared.streams import reader_is_gone
+from fatektool.cli.shared.streams import output_loss
 from fatektool.errors import FatektoolError, PlcError
 from fatektool.jobs.elements.items import comments_of
 
@@ -96,7 +96,7 @@ def _lines(rounds: Iterator[Snapshot], comments: Mapping[str, str]) -> Snapshot 
     for snapshot in rounds:
         click.echo(json.dumps(watch_document(snapshot, comments), allow_nan=False))
         sys.stdout.flush()
-        if reader_is_gone():
+        if output_loss() is not None:
             break
     return snapshot
 

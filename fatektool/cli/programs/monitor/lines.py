@@ -11,7 +11,7 @@ import click
 from fatektool.cli.programs.monitor.documents import monitor_document
 from fatektool.cli.programs.monitor.why import say_of_program
 from fatektool.cli.shared.rounds import paced_rounds
-from fatektool.cli.shared.streams import reader_is_gone
+from fatektool.cli.shared.streams import output_loss
 
 if TYPE_CHECKING:
     from fatektool.cli.shared.output import Voice
@@ -40,6 +40,6 @@ def print_rounds(plc: Plc, monitor: Monitor, pace: RoundTimes, voice: Voice) -> 
             say_of_program(monitor.program, voice)
         click.echo(json.dumps(monitor_document(plc, monitor, found), allow_nan=False))
         sys.stdout.flush()
-        if reader_is_gone():
+        if output_loss() is not None:
             break
     return found is None or not found.errors
