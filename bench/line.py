@@ -82,7 +82,7 @@ class Bench:
                 [*restore, "--changed-only", self.files["some"]],
                 exchanges.restore(pages, [number for number, _ in some], some),
             ),
-            "snapshot --all": (["snapshot", "--all", "-o", self.snapshot], exchanges.snapshot()),
+            "snapshot --all": (["snapshot", "--all", "-o", self.snapshot, "--force"], exchanges.snapshot()),
         }
 
     def rows(self) -> None:

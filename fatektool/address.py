@@ -8,7 +8,7 @@ new setting of the connection is a field here, its name in ``Settings``, and a r
 
 from __future__ import annotations
 
-from dataclasses import MISSING, dataclass, field, fields, replace
+from dataclasses import MISSING, field, fields, replace
 from typing import TYPE_CHECKING, Any, Final, Literal, TypedDict, cast
 
 from fatektool.checks import Check, OneOf, Seconds, Text, WholeNumber, YesNo
@@ -16,7 +16,7 @@ from fatektool.errors import UsageError
 from fatektool.protocol.registry import CODECS
 from fatektool.protocols import DEFAULT, PROTOCOLS
 from fatektool.transport.base import BAUD, FORMAT, LineSettings
-from fatektool.value import Value
+from fatektool.value import Value, frozen
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -46,7 +46,7 @@ def _checked(check: Check[Any], *, default: Any) -> Any:
     return field(default=default, metadata={"check": check})
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class PlcAddress(Value):
     """The address of a PLC and the settings of the connection to it.
 

@@ -2,18 +2,33 @@
 
 from __future__ import annotations
 
-from dataclasses import FrozenInstanceError, dataclass, replace
+import copy
+import pickle
+from dataclasses import FrozenInstanceError, fields, replace
+from typing import ClassVar
 
 import pytest
 
 from fatektool.protocol.commands import Loopback, ReadBriefStatus, ReadDetailedStatus, ReadPage, WritePage
-from fatektool.value import Value
+from fatektool.value import Value, frozen
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class Point(Value):
+    """A place."""
+
     x: int
     y: str = "b"
+    name: ClassVar[str] = "point"
+
+
+@frozen
+class Even(Value):
+    x: int
+
+    def __post_init__(self) -> None:
+        if self.x % 2:
+            raise ValueError(self.x)
 
 
 def test_equal_fields_are_equal_and_hash_alike() -> None:
@@ -41,6 +56,41 @@ def test_its_text_is_a_dataclasss() -> None:
 
 def test_it_stays_frozen_and_can_be_replaced() -> None:
     point = Point(1)
-    with pytest.raises(FrozenInstanceError):
+    with pytest.raises(FrozenInstanceError, match="'x'"):
         point.x = 2  # type: ignore[misc]
+    with pytest.raises(FrozenInstanceError, match="'x'"):
+        del point.x
+    with pytest.raises(FrozenInstanceError, match="'z'"):
+        point.z = 2
+    assert point == Point(1)
     assert replace(point, x=2) == Point(2)
+
+
+def test_its_fields_are_those_of_a_dataclass() -> None:
+    assert [field.name for field in fields(Point)] == ["x", "y"]
+    assert Point.__slots__ == ("x", "y")
+    assert Point.__doc__ == "A place."
+    assert not hasattr(Point(1), "__dict__")
+
+
+def test_it_is_made_by_place_or_by_name() -> None:
+    assert Point(1, "a") == Point(y="a", x=1)
+    for words in ((), (1, "a", 2)):
+        with pytest.raises(TypeError, match="__init__"):
+            Point(*words)
+    with pytest.raises(TypeError, match="z"):
+        Point(1, z=2)  # type: ignore[call-arg]
+
+
+def test_it_is_checked_when_it_is_made() -> None:
+    assert Even(2).x == 2
+    with pytest.raises(ValueError, match="3"):
+        Even(3)
+    with pytest.raises(ValueError, match="5"):
+        replace(Even(2), x=5)
+
+
+def test_it_is_copied_and_pickled() -> None:
+    point = Point(1, "a")
+    assert copy.copy(point) == copy.deepcopy(point) == point
+    assert pickle.loads(pickle.dumps(point)) == point  # noqa: S301  # of our own

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import ceil
 from typing import TYPE_CHECKING, Any, Final
 
@@ -10,7 +9,7 @@ from fatektool.counts import counted
 from fatektool.errors import DeadlinePassed, GatewayTimeout, NoAnswer, TransportClosed
 from fatektool.exchange.state import MARGIN
 from fatektool.protocol.commands import PROGRAM_COMMANDS, Command
-from fatektool.value import Value
+from fatektool.value import Value, frozen
 
 if TYPE_CHECKING:
     from fatektool.errors import LineError
@@ -86,7 +85,7 @@ def no_answer(
     return _Report(state, receiver, request, gateway, effort, unknown).error()
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class _Report(Value):
     state: LinkState
     receiver: Receiver

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fatektool.errors import PlcRefused
 from fatektool.protocol.commands import Command, ReadDetailedStatus
-from fatektool.value import Value
+from fatektool.value import Value, frozen
 
 if TYPE_CHECKING:
     from fatektool.client import Plc
     from fatektool.protocol.status import BriefStatus, DetailedStatus, RawStatus, StatusFlags, System
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class StatusReport(Value):
     """A PLC's status.
 

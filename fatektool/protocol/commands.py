@@ -19,12 +19,11 @@ The length of a run depends on the protocol: the codec checks it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING, ClassVar, Final, Generic, TypeVar
 
 from fatektool.errors import UsageError
-from fatektool.value import Value
+from fatektool.value import Value, frozen
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -110,14 +109,14 @@ class Request(Value, Generic[A]):
     writes: ClassVar[bool] = False
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class ReadBriefStatus(Request["BriefStatus"]):
     """40: three status bytes."""
 
     command: ClassVar[Command] = Command.BRIEF_STATUS
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class RunStop(Request[None]):
     """41: RUN or STOP."""
 
@@ -126,7 +125,7 @@ class RunStop(Request[None]):
     writes: ClassVar[bool] = True
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class ControlDiscrete(Request[None]):
     """42: disable, enable, set or reset one discrete."""
 
@@ -139,7 +138,7 @@ class ControlDiscrete(Request[None]):
         _discrete(self.element, self.command)
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class ReadDisabled(Request[tuple[bool, ...]]):
     """43: for 1 to 256 consecutive discretes, True where one is **disabled**."""
 
@@ -151,7 +150,7 @@ class ReadDisabled(Request[tuple[bool, ...]]):
         _discrete_run(self.first, self.count, self.command)
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class ReadDiscretes(Request[tuple[bool, ...]]):
     """44: the state of consecutive discretes: 1 to 256 in FACON."""
 
@@ -163,7 +162,7 @@ class ReadDiscretes(Request[tuple[bool, ...]]):
         _discrete_run(self.first, self.count, self.command)
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class WriteDiscretes(Request[None]):
     """45: set the state of consecutive discretes: 1 to 256 in FACON."""
 
@@ -176,7 +175,7 @@ class WriteDiscretes(Request[None]):
         _discrete_run(self.first, len(self.values), self.command)
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class ReadRegisters(Request[tuple[int, ...]]):
     """46: consecutive words, unsigned: in FACON 1 to 64 of 16 bits or 1 to 32 of 32 bits."""
 
@@ -188,7 +187,7 @@ class ReadRegisters(Request[tuple[int, ...]]):
         _register_run(self.first, self.count, self.command)
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class WriteRegisters(Request[None]):
     """47: write consecutive words, unsigned: in FACON 1 to 64 of 16 bits or 1 to 32 of 32 bits."""
 
@@ -203,7 +202,7 @@ class WriteRegisters(Request[None]):
             _fits(self.first.after(place), value)
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class ReadMixed(Request[tuple[int, ...]]):
     """48: elements of any kind, at most 64 words in total; a discrete reads as 0 or 1."""
 
@@ -214,7 +213,7 @@ class ReadMixed(Request[tuple[int, ...]]):
         _mixed(self.elements, MAX_READ_WORDS, self.command)
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class WriteMixed(Request[None]):
     """49: elements of any kind with their values, at most 32 words in total."""
 
@@ -228,7 +227,7 @@ class WriteMixed(Request[None]):
             _fits(element, value)
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class Loopback(Request[bytes]):
     """4E: the PLC answers the data of the request, 0 to 256 characters."""
 
@@ -240,7 +239,7 @@ class Loopback(Request[bytes]):
             raise UsageError(f"loopback: expected at most {MAX_LOOPBACK} characters, got {len(self.data)}")
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class ReadPage(Request[bytes]):
     """4F: one page of the program, 64 words, high byte first [E:page-order], as 128 bytes. Page 0: header."""
 
@@ -251,7 +250,7 @@ class ReadPage(Request[bytes]):
         _page(self.page)
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class WritePage(Request[None]):
     """50: write one page of the program, 128 bytes."""
 
@@ -266,7 +265,7 @@ class WritePage(Request[None]):
             raise UsageError(f"program page {self.page}: expected {PAGE_BYTES} bytes, got {len(self.data)}")
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class ReadDetailedStatus(Request["DetailedStatus | RawStatus"]):
     """53: 64 status bytes, with the ladder size; raw bytes if no paper describes them."""
 

@@ -15,17 +15,17 @@ F and DF are only in the M-series paper (section 2.4); FACON writes them like R 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from functools import total_ordering
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import UsageError
-from fatektool.value import Value
+from fatektool.value import Value, frozen
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class ElementKind(Value):
     """A kind of element.
 
@@ -74,8 +74,9 @@ KINDS: Final[dict[str, ElementKind]] = _kinds()
 _WRITTEN = re.compile(r"([A-Za-z]{1,3})([0-9]{1,12})", re.ASCII)
 
 
-@dataclass(frozen=True, slots=True, order=True)
-class Element:
+@total_ordering
+@frozen
+class Element(Value):
     """One element: ``Element("R", 12)``, written ``R12``.
 
     Raises:
@@ -105,6 +106,16 @@ class Element:
                 hint=f"{self.symbol}{below} contains {self.symbol[-1]}{self.address}",
                 element=str(self),
             )
+
+    # Of its own, as elements are compared and sorted by the thousand.
+    def __eq__(self, other: object) -> bool:
+        return type(other) is Element and self.address == other.address and self.symbol == other.symbol
+
+    def __hash__(self) -> int:
+        return hash((self.symbol, self.address))
+
+    def __lt__(self, other: Element) -> bool:
+        return (self.symbol, self.address) < (other.symbol, other.address)
 
     @property
     def kind(self) -> ElementKind:
@@ -147,7 +158,7 @@ class Element:
         return cls(match[1].upper(), int(match[2]))
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class Stretch(Value):
     """Consecutive elements of one kind, a number of them from a first one: such as all registers R of a PLC.
 

@@ -19,11 +19,10 @@ FACON's, any other is kept as bytes.
 from __future__ import annotations
 
 import struct
-from dataclasses import dataclass
 from typing import Any, Final
 
 from fatektool.errors import FrameError
-from fatektool.value import Value
+from fatektool.value import Value, frozen
 
 MODELS: Final = {
     0xFF: "FB, 8K steps",
@@ -42,7 +41,7 @@ DETAILED: Final = struct.Struct(">4B12H36x")
 """The layouts of 40 and 53; the 36 bytes at the end are reserved."""
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class StatusFlags(Value):
     """Status byte 1, the same in 40 and 53, bit 0 first; ``rom_pack`` is an M-series PLC's memory card."""
 
@@ -69,7 +68,7 @@ class StatusFlags(Value):
         return {name: getattr(self, name) for name in self.__slots__}
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class BriefStatus(Value):
     """The answer to 40.
 
@@ -114,7 +113,7 @@ class BriefStatus(Value):
         return bytes([self.status1, self.status2, self.status3])
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class System(Value):
     """Model and sizes of a PLC, bytes 2 to 28 of 53: the part that does not change by itself."""
 
@@ -154,7 +153,7 @@ class System(Value):
         return found
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class DetailedStatus(Value):
     """The answer to 53.
 
@@ -184,7 +183,7 @@ class DetailedStatus(Value):
         return cls(StatusFlags.parse(flags), system, bytes(data), assumed)
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class RawStatus(Value):
     """An answer to 53 in a layout that no paper describes."""
 

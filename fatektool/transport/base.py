@@ -15,11 +15,10 @@ from __future__ import annotations
 
 import time
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from fatektool.checks import OneOf, WholeNumber
-from fatektool.value import Value
+from fatektool.value import Value, frozen
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -53,7 +52,7 @@ BAUD: Final = WholeNumber(50, 4_000_000)
 FORMAT: Final = LineFormat()
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class LineSettings(Value):
     """A serial line's speed and format; the factory setting is 9600 7E1 [E:factory].
 

@@ -25,13 +25,12 @@ import sys
 import threading
 import time
 from binascii import crc32
-from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING, Final
 
 from fatektool.callbacks import ignore
 from fatektool.errors import PortBusy, UsageError
-from fatektool.value import Value
+from fatektool.value import Value, frozen
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -91,7 +90,7 @@ def _own_folder() -> str:
     return gettempdir()
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@frozen
 class Holder(Value):
     """The process that holds a lock, as written in its file.
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import contextlib
 import sys
 import time
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Final, TextIO
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TextIO
 
 import click
 
@@ -166,8 +165,7 @@ def print_json(document: dict[str, Any]) -> None:
     click.echo(json.dumps(document, indent=2, allow_nan=False))
 
 
-@dataclass(frozen=True, slots=True)
-class Voice:
+class Voice(NamedTuple):
     """Where and how a command prints.
 
     Attributes:
@@ -198,7 +196,7 @@ class Voice:
 
     def of(self, name: str) -> Voice:
         """The same voice where many PLCs are talked of: this one's name comes first."""
-        return replace(self, name=f"{name}: ")
+        return self._replace(name=f"{name}: ")
 
     def show(self, document: dict[str, Any], lines: Iterable[str]) -> None:
         """Print the document or the lines, on stdout."""
