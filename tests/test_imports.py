@@ -184,7 +184,7 @@ def test_the_simulator_shares_no_code_with_the_client() -> None:
         if folder_of(found.name) == "simulator":
             assert found.folder in TO_THE_SIMULATOR, f"{found.by} imports {found.name}"
         if found.folder == "simulator":
-            assert folder_of(found.name) in {"simulator", "errors", "protocols"}, (
+            assert folder_of(found.name) in {"simulator", "errors", "protocols", "system"}, (
                 f"{found.by} imports {found.name}"
             )
 

@@ -27,7 +27,8 @@ from pathlib import Path
 from typing import Final
 
 from fatektool.errors import DataError, FatektoolError, FileExists, FileWarning, UsageError
-from fatektool.files.portable_name import require_no_device
+from fatektool.files.portable_name import require_file_name
+from fatektool.system.renaming import is_held, rename_file, replace_file
 
 STANDARD: Final = "-"
 """The name of standard input where a file is read, and of standard output where one is written."""
@@ -46,7 +47,7 @@ def require_place(path: Path, *, overwrite: bool) -> Path:
     """
     if is_pipe(path):
         return path
-    require_no_device(str(path))
+    require_file_name(str(path))
     try:
         real = Path(os.path.realpath(path))
         if real.is_symlink():
@@ -94,6 +95,7 @@ def make_folder(path: Path) -> bool:
     Raises:
         UsageError: it cannot be created, is not a folder, or is not writable.
     """
+    require_file_name(str(path))
     try:
         made = not path.exists()
         path.mkdir(parents=True, exist_ok=True)
@@ -132,7 +134,7 @@ def write_whole(path: Path, data: bytes, *, overwrite: bool, mode: int = _MODE) 
     try:
         write_synced(temporary, data, mode)
         if overwrite:
-            temporary.replace(real)
+            replace_file(temporary, real)
         else:
             _put_new(temporary, real)
         sync_folder(real.parent)
@@ -165,7 +167,7 @@ def read_bounded(path: Path, limit: int) -> bytes:
         if str(path) == STANDARD:
             data = sys.stdin.buffer.read(limit + 1)
         else:
-            require_no_device(str(path))
+            require_file_name(str(path))
             with path.open("rb") as file:
                 data = file.read(limit + 1)
     except (OSError, ValueError) as error:
@@ -217,6 +219,9 @@ def file_error(what: str, path: Path, error: OSError | ValueError) -> FatektoolE
         )
     if number == errno.EIO:
         return DataError(message, hint="check the disk", file=str(path))
+    if is_held(error):
+        hint = "close the program that has it open, or check the permissions, and run it again"
+        return UsageError(message, hint=hint, file=str(path))
     return UsageError(message, hint="check the name and the permissions", file=str(path))
 
 
@@ -259,7 +264,7 @@ def _put_new(temporary: Path, real: Path) -> None:
     except OSError:
         if real.exists():
             raise FileExistsError(errno.EEXIST, "exists", str(real)) from None
-        temporary.rename(real)
+        rename_file(temporary, real)
 
 
 def sync_folder(folder: Path) -> None:

@@ -20,6 +20,7 @@ import zlib
 from typing import TYPE_CHECKING, Final
 
 from fatektool.files.atomic import sync_folder, write_synced
+from fatektool.system.renaming import replace_file
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -72,7 +73,7 @@ def write_loose(folder: Path, new: ShaFile, rights: Rights) -> str:
     try:
         write_synced(temporary, new.as_legacy_object())
         rights.give(temporary)
-        temporary.replace(place)
+        replace_file(temporary, place)
         sync_folder(place.parent)
     finally:
         with contextlib.suppress(OSError):

@@ -19,6 +19,7 @@ from dulwich.pack import UnpackedObject
 
 from fatektool.files.atomic import sync_folder
 from fatektool.history.loose import TEMPORARY, read_loose
+from fatektool.system.renaming import remove_file
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -66,7 +67,7 @@ def pack_loose(repository: Repository) -> int:
             repository.rights.give(path)
         sync_folder(packs)
         for place in places:
-            place.unlink(missing_ok=True)
+            remove_file(place)
     return len(places)
 
 
@@ -94,5 +95,5 @@ def _sweep(repository: Repository) -> None:
     left = [path for name in _FOLDERS for path in (objects / name).glob(f"{TEMPORARY}*")]
     left += [path for pattern in _OURS for path in (objects / "pack").glob(pattern)]
     for path in left:
-        path.unlink(missing_ok=True)
+        remove_file(path)
     repository.git.object_store.prune(_UNFINISHED_S)

@@ -28,6 +28,7 @@ from fatektool.files.atomic import file_error
 from fatektool.history.commits import Commit, parse_commit
 from fatektool.history.loose import read_loose
 from fatektool.history.sharing import Rights, rights_of
+from fatektool.system.shell import command_line
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -75,9 +76,10 @@ class Repository:
                 file=str(folder),
             )
         if (folder / ".git").exists():
+            clone = command_line(["git", "clone", "--bare", str(folder), "OTHER"])
             raise DataError(
                 f"{folder} has a work tree: expected a bare repository",
-                hint=f"use another folder, or create one: git clone --bare {folder} OTHER",
+                hint=f"use another folder, or create one: {clone}",
                 file=str(folder),
             )
         with self.guard("the repository"):

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import UsageError
 from fatektool.history.trees import file_in
+from fatektool.system.shell import command_line, own_command_line
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -83,9 +84,10 @@ def resolve(repository: Repository, name: str, revision: str) -> Commit:
             f"or a date such as 2026-11-22"
         )
     if found is None:
-        hint = f"see 'fatektool history log {name}'"
+        hint = f"to see all run: {own_command_line('history', 'log', name)}"
         if repository.cut:
-            hint += f"; it is a shallow clone: git -C {repository.folder} fetch --unshallow gets the rest"
+            fetch = command_line(["git", "-C", str(repository.folder), "fetch", "--unshallow"])
+            hint = f"older ones are missing, as it is a shallow clone; to fetch them run: {fetch}"
         raise UsageError(f"there is no revision {name}@{revision} in {repository.folder}", hint=hint)
     return found
 

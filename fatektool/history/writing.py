@@ -32,6 +32,8 @@ from fatektool.errors import PortBusy, UsageError
 from fatektool.files.atomic import file_error, sync_folder, write_synced
 from fatektool.history.repository import is_repository
 from fatektool.history.sharing import FILE_MODE, FOLDER_MODE, Rights, rights_of
+from fatektool.system.renaming import replace_file
+from fatektool.system.shell import command_line
 from fatektool.transport.lock import PortLock
 
 if TYPE_CHECKING:
@@ -89,10 +91,10 @@ def writing(folder: Path, wait_s: float, waiting: Callable[[str], None] = ignore
         finally:
             lock.release()
     except PermissionError as error:
+        share = command_line(["git", "-C", str(folder), "config", "core.sharedRepository", "group"])
         raise UsageError(
             f"cannot write {folder}: {error.strerror}: {error.filename}",
-            hint="check the permissions. If several users write this history: "
-            f"git -C {folder} config core.sharedRepository group, "
+            hint=f"check the permissions. If several users write this history, run: {share}; "
             "then give the group access to the existing files: chgrp -R, chmod -R g+rwX",
             file=str(folder),
         ) from error
@@ -117,7 +119,7 @@ def _make(folder: Path) -> None:
         temporary = folder / f"{name}.tmp"
         temporary.unlink(missing_ok=True)
         write_synced(temporary, data)
-        temporary.replace(folder / name)
+        replace_file(temporary, folder / name)
         sync_folder(folder)
 
 
@@ -179,7 +181,7 @@ def move_branch(
             sleep(_POLL_S)
         if not still():
             return False
-        lock.replace(path)
+        replace_file(lock, path)
         sync_folder(path.parent)
         return True
     finally:

@@ -90,10 +90,13 @@ class Inventory:
         """Raise DataError if there is a fault; its details have all of them."""
         if not self.faults:
             return
+        from fatektool.system.shell import own_command_line
+
         more = f" (and {len(self.faults) - 1} more)" if len(self.faults) > 1 else ""
+        check = own_command_line("inventory", "check", "--inventory", str(self.file))
         raise DataError(
             f"{self.file}: {self.faults[0]}{more}",
-            hint=f"see 'fatektool inventory check --inventory {self.file}'",
+            hint=f"to see all of them run: {check}",
             file=str(self.file),
             faults=[str(fault) for fault in self.faults],
         )

@@ -29,6 +29,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from fatektool.errors import DataError
 from fatektool.simulator.models import MAX_LADDER_WORDS, MODELS, PAGE_BYTES
 from fatektool.simulator.plc import FLAGS, MAX_STATION, SimulatedPlc
+from fatektool.system.renaming import replace_file
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -91,7 +92,7 @@ class StateFile:
             try:
                 with open(temporary, "w", encoding="ascii", opener=_private) as file:
                     file.write(dump_state(plcs.values()))
-                temporary.replace(target)
+                replace_file(temporary, target)
             except BaseException:
                 temporary.unlink(missing_ok=True)
                 raise

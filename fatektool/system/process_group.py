@@ -37,7 +37,8 @@ class ProcessGroup:
         if sys.platform == "win32":
             from fatektool.system.windows_processes import Job
 
-            self._job = Job(int(self.process._handle))  # type: ignore[attr-defined]  # noqa: SLF001  # its only place
+            handle = int(self.process._handle)  # type: ignore[attr-defined]  # noqa: SLF001  # its only place
+            self._job = Job.of(handle)
 
     def terminate(self) -> None:
         """Ask the program and its children to end; on Windows end them."""
@@ -56,7 +57,8 @@ class ProcessGroup:
     def _signal(self, number: signal.Signals) -> None:
         if self._job is not None:
             self._job.end()
-            return
-        if sys.platform != "win32":
+        elif sys.platform == "win32":
+            self.process.terminate()
+        else:
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(self.process.pid, number)

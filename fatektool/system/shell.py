@@ -5,7 +5,7 @@ rules::
 
     sh            '…'    nothing in it is special; Linux, macOS, Git Bash
     cmd           "…"    %NAME% is replaced also in it
-    powershell    "…"    $ and ` are special in it, '…' has nothing special
+    powershell    "…"    $ and ` are special in it, '…' has nothing special; & before a program in quotes
 
 On Windows the shell is the nearest ancestor process that is one. Where possible a word is quoted so that
 cmd.exe and PowerShell both accept it, because a record of a write may be read in the other one.
@@ -17,6 +17,8 @@ import os
 import re
 import shlex
 from typing import TYPE_CHECKING, Final
+
+from fatektool.system.own_program import own_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -44,7 +46,18 @@ def command_line(words: Sequence[str], shell: str | None = None) -> str:
         words: the program and its arguments.
         shell: ``sh``, ``cmd`` or ``powershell``; by default that of the user.
     """
-    return " ".join(quoted(word, shell) for word in words)
+    found = shell or current()
+    line = " ".join(quoted(word, found) for word in words)
+    return f"& {line}" if found == POWERSHELL and line[:1] in {"'", '"'} else line
+
+
+def own_command_line(*words: str) -> str:
+    """A command line of this program, for the user's shell.
+
+    Args:
+        words: the command and its arguments.
+    """
+    return command_line([*own_words(), *words])
 
 
 def quoted(word: str, shell: str | None = None) -> str:

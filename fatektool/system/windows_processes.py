@@ -71,14 +71,29 @@ class Job:
     """A job object: a process in it, and each process that it starts, can be ended together.
 
     Args:
-        process: the handle of the first process.
+        handle: its own.
     """
 
-    def __init__(self, process: int) -> None:
+    def __init__(self, handle: ctypes.c_void_p) -> None:
+        self._handle = handle
+
+    @classmethod
+    def of(cls, process: int) -> Job | None:
+        """A job with a process; None if the system makes none, or the process is in one that allows no other.
+
+        Args:
+            process: the handle of the process.
+        """
         kernel = _kernel()
         kernel.CreateJobObjectW.restype = ctypes.c_void_p
-        self._handle = ctypes.c_void_p(kernel.CreateJobObjectW(None, None))
-        kernel.AssignProcessToJobObject(self._handle, ctypes.c_void_p(process))
+        number = kernel.CreateJobObjectW(None, None)
+        if not number:
+            return None
+        made = cls(ctypes.c_void_p(number))
+        if not kernel.AssignProcessToJobObject(made._handle, ctypes.c_void_p(process)):
+            made.close()
+            return None
+        return made
 
     def end(self) -> None:
         """End all processes of the group."""

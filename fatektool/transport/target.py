@@ -75,9 +75,9 @@ class Target(NamedTuple):
         text = _lower_scheme(text)
         if text.startswith("sim:"):
             if _WINDOWS:
-                from fatektool.files.portable_name import require_no_device
+                from fatektool.files.portable_name import require_file_name
 
-                require_no_device(text.removeprefix("sim:"))
+                require_file_name(text.removeprefix("sim:"))
             return cls(text, TargetKind.SIM, path=text.removeprefix("sim:"))
         if text.startswith(("tcp:", "udp:")):
             return cls._net(text, default_port)

@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from fatektool.cli import run
 from fatektool.errors import UsageError
 from fatektool.files import portable_name
 from fatektool.files.atomic import read_bounded, require_place, write_whole
-from fatektool.files.portable_name import device_of_name
+from fatektool.files.portable_name import device_of_name, fault_of_name, is_portable_name
 from fatektool.transport import target as target_module
 from fatektool.transport.serial_line import url
 from fatektool.transport.serial_line.windows import port_name
@@ -42,6 +43,42 @@ def test_the_device_of_a_name(path: str, device: str | None) -> None:
     assert device_of_name(path) == device
 
 
+COLON = "a file name cannot contain ':'"
+END = "a file name cannot end with a full stop or a space"
+
+
+@each(
+    ("path", "fault"),
+    [
+        ("press.json", None),
+        (r"C:\my plant\press.json", None),
+        (r"C:press.json", None),
+        (r"\\?\C:\plant\press.json", None),
+        (r"\\server\share\press.json", None),
+        ("../a.b/press", None),
+        (".", None),
+        ("", None),
+        ("press 10:30.json", COLON),
+        (r"C:\plant\press:1.json", COLON),
+        ("press?.json", "a file name cannot contain '?'"),
+        ('"press.json', "a file name cannot contain '\"'"),
+        ("press\n.json", r"a file name cannot contain '\n'"),
+        ("press.json.", END),
+        ("press.json ", END),
+        (r"plant.\press.json", END),
+        ("backups/", None),
+        ("com2.json", "this name opens the device COM2"),
+    ],
+)
+def test_what_windows_does_not_take_as_a_file(path: str, fault: str | None) -> None:
+    assert fault_of_name(path) == fault
+
+
+@each(("name", "portable"), [("press", True), ("press.1", True), ("press.", False), ("com3", False)])
+def test_names_of_plcs_can_be_files_everywhere(name: str, *, portable: bool) -> None:
+    assert is_portable_name(name) is portable
+
+
 @pytest.fixture
 def _windows(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(portable_name, "WINDOWS", True)
@@ -62,6 +99,45 @@ def test_no_file_is_written_or_read_under_such_a_name(tmp_path: Path) -> None:
         with pytest.raises(UsageError, match="on Windows this name opens the device COM2") as caught:
             use()
         assert caught.value.hint == "choose another file name"
+    assert not list(tmp_path.iterdir())
+
+
+WAYS = [
+    "backup {}",
+    "backup x.json --raw {}",
+    "backup x.json --trace {}",
+    "restore {} --yes",
+    "restore old.json --yes --safety-dir {}",
+    "verify {} --report x.html",
+    "snapshot R0 -o {} -p sim:",
+    "snapshot R0 -o {}/ -p sim:",
+    "snapshot R0 --append {}",
+    "snapshot diff {} x.json",
+    "watch R0 --count 1 --report {}",
+    "fleet backup --dir {}",
+    "fleet status --prometheus {}",
+    "fleet status --inventory {}",
+    "inspect {}",
+    "history log --history {}",
+    "simulate --state {}",
+    "simulate --replay {}",
+    "check --reference {}",
+    "link table check {}",
+]
+
+
+@pytest.mark.usefixtures("_windows")
+@pytest.mark.parametrize("name", ["nul.json", "press 10:30.json"])
+def test_no_command_takes_such_a_name(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Wherever a user names a file: it is refused before anything is read or written."""
+    monkeypatch.chdir(tmp_path)
+    for way in WAYS:
+        words = [word.format(name) for word in way.split()]
+        assert run(words) == 2, way
+        said = capsys.readouterr().err
+        assert f"{name}: on Windows {fault_of_name(name)}; choose another file name" in said, way
     assert not list(tmp_path.iterdir())
 
 

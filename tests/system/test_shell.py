@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
+import ast
 import os
+import re
 import shlex
-import subprocess
 import sys
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fatektool.cli.app import JOBS
 from fatektool.errors import UsageError
 from fatektool.jobs.fleet import alarms
-from fatektool.system import shell
-from fatektool.system.process_group import ProcessGroup
+from fatektool.system import own_program, shell
 from fatektool.system.windows_processes import chain
 from tests.root import ROOT
 from tests.rows import each
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 WORDS = [
     ("press.json", "press.json", "press.json"),
@@ -75,6 +73,52 @@ def _arguments(line: str) -> list[str]:
     return found + ([word] if word is not None else [])
 
 
+def test_powershell_runs_a_program_in_quotes_by_the_operator() -> None:
+    words = [r"C:\my tools\fatektool.exe", "status"]
+    assert shell.command_line(words, shell.POWERSHELL) == r'& "C:\my tools\fatektool.exe" status'
+    assert shell.command_line(words, shell.CMD) == r'"C:\my tools\fatektool.exe" status'
+    assert shell.command_line(["fatektool", "my file"], shell.POWERSHELL) == 'fatektool "my file"'
+
+
+@each(
+    ("started", "expected"),
+    [
+        ("fatektool", ["fatektool"]),
+        ("/usr/bin/fatektool", ["fatektool"]),
+        ("/srv/my tools/fatektool.pyz", ["PYTHON", "/srv/my tools/fatektool.pyz"]),
+        ("tool.pyz", ["PYTHON", "HERE/tool.pyz"]),
+        ("/srv/fatektool/__main__.py", ["PYTHON", "-m", "fatektool"]),
+        ("/srv/pytest/__main__.py", ["fatektool"]),
+        ("-c", ["fatektool"]),
+        ("", ["fatektool"]),
+    ],
+)
+def test_the_words_that_start_this_program_again(started: str, expected: list[str]) -> None:
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(sys, "argv", [started])
+        patched.setattr(own_program, "_in_path", lambda _stem: True)
+        found = own_program.own_words()
+    assert [
+        word.replace("PYTHON", sys.executable).replace("HERE", str(Path.cwd())) for word in expected
+    ] == found
+
+
+def test_a_command_that_the_shell_does_not_find_has_its_path(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """An environment that is not activated, or an exe that was put on the desktop."""
+    program = tmp_path / "bin" / "fatektool"
+    program.parent.mkdir()
+    program.write_text("")
+    program.chmod(0o755)
+    monkeypatch.setattr(sys, "argv", [str(program)])
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert own_program.own_words() == [str(program)]
+    if os.name == "posix":
+        monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{program.parent}")
+        assert own_program.own_words() == ["fatektool"]
+
+
 @each(
     ("programs", "expected"),
     [
@@ -109,28 +153,25 @@ def test_a_command_of_windows_keeps_its_backslashes(monkeypatch: pytest.MonkeyPa
             alarms.parse_command(wrong, "--on-failure")
 
 
-def test_a_command_is_ended_with_all_that_it_started(tmp_path: Path) -> None:
-    """The child of the program is known to run by its file, and to have ended by its closed pipe."""
-    child = f"open({str(tmp_path / 'runs')!r}, 'w').close(); import threading; threading.Event().wait()"
-    script = f"import subprocess, sys; subprocess.run([sys.executable, '-c', {child!r}])"
-    reader, writer = os.pipe()
-    os.set_inheritable(writer, True)  # noqa: FBT003
-    group = ProcessGroup([sys.executable, "-c", script], stdout=writer, close_fds=False)
-    os.close(writer)
-    while not (tmp_path / "runs").exists():
-        assert group.process.poll() is None
-    group.kill()
-    group.close()
-    assert os.read(reader, 1) == b""
-    os.close(reader)
-    assert group.process.returncode
+_COMMANDS = "|".join(name for section in JOBS.values() for name in section)
+_IN_COMMAND = re.compile(rf"\b(?:git -C|git clone|git init|fatektool (?:{_COMMANDS}) |chmod |chgrp )[^;:']*$")
 
 
-def test_what_a_command_leaves_in_the_background_goes_on() -> None:
-    group = ProcessGroup([sys.executable, "-c", "pass"], stdout=subprocess.DEVNULL)
-    assert group.process.wait() == 0
-    group.terminate()
-    group.close()
+def test_commands_in_messages_are_made_for_the_shell() -> None:
+    """A value in a command that a message names, such as a path with a space, is quoted by this module."""
+    found = []
+    of_elements = {"discrete.py", "discretes.py"}  # whose names have no character that is special
+    for path in (ROOT / "fatektool").rglob("*.py"):
+        for text in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if not isinstance(text, ast.JoinedStr) or path.name in of_elements:
+                continue
+            before = ""
+            for part in text.values:
+                if isinstance(part, ast.Constant):
+                    before += str(part.value)
+                elif _IN_COMMAND.search(before) and "quoted" not in ast.dump(part):
+                    found.append(f"{path}:{text.lineno}: {ast.unparse(text)}")
+    assert not found
 
 
 def test_messages_quote_for_the_shell_of_the_user() -> None:

@@ -2,137 +2,188 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
-from typing import TYPE_CHECKING, Any
+from contextlib import ExitStack, contextmanager
+from typing import TYPE_CHECKING
 
 import pytest
 import serial
 
-from fatektool.errors import LineError, PortBusy, TransportClosed
+from fatektool.errors import LineError, PortBusy, TransportClosed, TransportTimeout
 from fatektool.transport.base import LineSettings
 from fatektool.transport.open import open_transport
+from fatektool.transport.serial_line import url
 from fatektool.transport.serial_line.port import SerialTransport
-from fatektool.transport.serial_line.windows import ERRORS
+from fatektool.transport.serial_line.windows import ERRORS, WindowsErrorKind
 from fatektool.transport.target import Target
+from tests.platforms import posix
 from tests.rows import each
+from tests.transport.windows_kernel import Kernel, windows_ports
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
+
+    from fatektool.transport.base import Transport
 
 LINE = LineSettings(9600, "7E1")
-
-OPENED = "could not open port 'COM3': {}"
-SET_UP = "Cannot configure port, something went wrong. Original message: {}"
-BUSY, MISSING, SETTINGS, BROKEN, UNPLUGGED = (
-    "another program has the port open",
-    "no such port",
-    "--baud and --line",
-    "driver",
-    "plug it in again",
-)
-WHEN_OPENED = [
-    (OPENED, "PermissionError(13, 'Access is denied.', None, 5)", BUSY),
-    (OPENED, "PermissionError(13, 'Zugriff verweigert', None, 5)", BUSY),
-    (OPENED, "PermissionError(13, 'The process cannot access the file …', None, 32)", BUSY),
-    (OPENED, "PermissionError(13, 'Die angeforderte Ressource wird bereits verwendet.', None, 170)", BUSY),
-    (OPENED, "FileNotFoundError(2, 'The system cannot find the file specified.', None, 2)", MISSING),
-    (OPENED, "FileNotFoundError(2, 'Das System kann den angegebenen Pfad nicht finden.', None, 3)", MISSING),
-    (OPENED, "OSError(22, 'The filename, directory name, or volume label is incorrect', None, 123)", MISSING),
-    (OPENED, "OSError(22, 'A device attached to the system is not functioning.', None, 31)", BROKEN),
-    (SET_UP, "OSError(22, 'A device attached to the system is not functioning.', None, 31)", BROKEN),
-    (SET_UP, "OSError(22, 'The parameter is incorrect.', None, 87)", SETTINGS),
-    (SET_UP, "OSError(22, 'Falscher Parameter.', None, 87)", SETTINGS),
-    (OPENED, "OSError(22, 'Incorrect function.', None, 1)", "not a serial port"),
-    (SET_UP, "PermissionError(13, 'The device does not recognize the command.', None, 22)", UNPLUGGED),
-    (OPENED, "OSError(22, 'The semaphore timeout period has expired.', None, 121)", UNPLUGGED),
-    (OPENED, "OSError(22, 'A device which does not exist was specified.', None, 433)", UNPLUGGED),
-    (OPENED, "OSError(22, 'The device isn\\'t connected: \"COM3\"', None, 1167)", UNPLUGGED),
-]
-WHILE_USED = [
-    ("ClearCommError failed ({})", "PermissionError(13, 'Access is denied.', None, 5)"),
-    ("ClearCommError failed ({})", "PermissionError(13, 'Das Gerät erkennt den Befehl nicht.', None, 22)"),
-    ("ReadFile failed ({})", "OSError(22, 'A device attached to the system is not functioning.', None, 31)"),
-    ("WriteFile failed ({})", "OSError(22, 'A device which does not exist was specified.', None, 433)"),
-    ("GetOverlappedResult failed ({})", "OSError(22, 'The device is not connected.', None, 1167)"),
-]
+WORDS = {
+    WindowsErrorKind.MISSING: "no such port",
+    WindowsErrorKind.BUSY: "another program has the port open",
+    WindowsErrorKind.NOT_SUPPORTED: "--baud and --line",
+    WindowsErrorKind.BROKEN: "manufacturer's driver",
+    WindowsErrorKind.GONE: "check that the adapter is plugged in",
+}
+TEXTS = ("Access is denied.", "Zugriff verweigert", "Das Gerät: \"COM3\" isn't connected (1, 'x', None, 9)")
+pytestmark = posix("there it is pyserial's own port that is imitated here")
 
 
-def refusal(monkeypatch: pytest.MonkeyPatch, error: Exception) -> LineError:
-    def open_port(*_: object, **__: object) -> Any:
-        raise error
+@pytest.fixture
+def kernel(monkeypatch: pytest.MonkeyPatch) -> Kernel:
+    return windows_ports(monkeypatch)
 
-    monkeypatch.setattr(serial, "serial_for_url", open_port)
+
+@contextmanager
+def port(name: str = "COM3") -> Iterator[Transport]:
+    with ExitStack() as stack:
+        found = open_transport(Target.parse(name), LINE, stack, lock_wait_s=0, low_latency=False)
+        assert isinstance(found, SerialTransport)
+        yield found
+
+
+def refusal(kernel: Kernel, function: str, number: int) -> LineError:
+    kernel.failing = {function: number}
     with ExitStack() as stack, pytest.raises(LineError) as caught:
         open_transport(Target.parse("COM3"), LINE, stack, lock_wait_s=0)
     return caught.value
 
 
-@each(("frame", "cause", "words"), WHEN_OPENED)
-def test_a_port_that_windows_does_not_open(frame: str, cause: str, words: str) -> None:
-    with pytest.MonkeyPatch.context() as monkeypatch:
-        error = refusal(monkeypatch, serial.SerialException(frame.format(cause)))
-    assert words in f"{error.message}; {error.hint}"
-    assert isinstance(error, PortBusy) == (words == BUSY)
-    assert "dialout" not in str(error)
-    assert "Error(" not in str(error)
-    assert error.exit_code == 3
+@pytest.mark.parametrize("function", ["CreateFileW", "SetCommState"])
+def test_a_port_that_windows_does_not_open(kernel: Kernel, function: str) -> None:
+    """Each number of the table, in opening and in setting up, in whatever language the system is."""
+    for number, known in ERRORS.items():
+        for kernel.text in TEXTS:
+            error = refusal(kernel, function, number)
+            said = f"{error.message}; {error.hint}"
+            assert WORDS[known.kind] in said
+            assert isinstance(error, PortBusy) == (known.kind is WindowsErrorKind.BUSY)
+            assert known.kind is WindowsErrorKind.MISSING or f"Windows error {number}" in said
+            assert error.exit_code == 3
+            for wrong in ("dialout", "Error(", kernel.text, "permission"):
+                assert wrong not in said
 
 
-def test_a_speed_that_windows_refuses_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    cause = SET_UP.format("OSError(22, 'The parameter is incorrect.', None, 87)")
-    assert str(refusal(monkeypatch, serial.SerialException(cause))) == (
+@each(
+    ("number", "kind"),
+    [
+        *((number, WindowsErrorKind.BUSY) for number in (5, 32)),
+        *((number, WindowsErrorKind.GONE) for number in (22, 121, 433, 1167)),
+        (31, WindowsErrorKind.BROKEN),
+        (87, WindowsErrorKind.NOT_SUPPORTED),
+        (2, WindowsErrorKind.MISSING),
+    ],
+)
+def test_what_the_numbers_mean_that_adapters_have(number: int, kind: WindowsErrorKind) -> None:
+    """Source: winerror.h, and what users of pyserial report."""
+    assert ERRORS[number].kind is kind
+
+
+def test_a_speed_that_windows_refuses_is_named(kernel: Kernel) -> None:
+    assert str(refusal(kernel, "SetCommState", 87)) == (
         "COM3: cannot be used as a serial port at 9600 7E1: the driver does not accept this baud rate or "
         "format (Windows error 87); check the name; check that the adapter supports this --baud and --line"
     )
 
 
+def test_a_number_that_is_not_in_the_table(kernel: Kernel) -> None:
+    """The system's own text: pyserial's has the form of a value of Python."""
+    for kernel.text in TEXTS:
+        error = refusal(kernel, "CreateFileW", 4711)
+        assert error.message == f"COM3: {kernel.text.rstrip('.')} (Windows error 4711)"
+
+
 def test_the_number_of_an_error_of_the_system(monkeypatch: pytest.MonkeyPatch) -> None:
     error = PermissionError(13, "Access is denied.")
     error.winerror = 5  # type: ignore[attr-defined, unused-ignore]  # as Windows sets it
-    assert isinstance(refusal(monkeypatch, error), PortBusy)
+
+    def open_port(*_: object, **__: object) -> None:
+        raise error
+
+    monkeypatch.setattr(serial, "serial_for_url", open_port)
+    with ExitStack() as stack, pytest.raises(PortBusy):
+        open_transport(Target.parse("COM3"), LINE, stack, lock_wait_s=0)
 
 
-def test_a_number_that_is_not_in_the_table(monkeypatch: pytest.MonkeyPatch) -> None:
-    error = refusal(monkeypatch, serial.SerialException(OPENED.format("OSError(22, 'Neu', None, 4711)")))
-    assert "4711" in error.message
+def reading(used: Transport) -> object:
+    return used.read(1, 0.0)
 
 
-class Port:
-    """What pyserial's port of Windows does when the adapter is pulled out."""
-
-    def __init__(self, error: Exception) -> None:
-        self._error = error
-        self.closed = False
-
-    @property
-    def in_waiting(self) -> int:
-        raise self._error
-
-    def read(self, _size: int) -> bytes:
-        raise self._error
-
-    def write(self, _data: bytes) -> int:
-        raise self._error
-
-    def close(self) -> None:
-        self.closed = True
+def writing(used: Transport) -> object:
+    used.write(b"\2")
+    return None
 
 
-@each(("frame", "cause"), WHILE_USED)
-def test_a_port_that_is_lost(frame: str, cause: str) -> None:
-    number = int(cause.rstrip(")").rpartition(", ")[2])
-    uses: list[Callable[[SerialTransport], object]] = [
-        lambda port: port.read(1, 0.1),
-        lambda port: port.write(b"\2"),
-    ]
-    for use in uses:
-        port = Port(serial.SerialException(frame.format(cause)))
-        with pytest.raises(TransportClosed) as caught:
-            use(SerialTransport("COM3", LINE, port))
-        assert caught.value.message.startswith("COM3: the port is lost: ")
-        assert caught.value.message.endswith(f"{ERRORS[number].text} (Windows error {number})")
-        assert caught.value.hint == "check that the adapter is plugged in, and run again"
-        assert port.closed
+@each(
+    ("function", "use"),
+    [
+        ("ClearCommError", reading),
+        ("ReadFile", reading),
+        ("GetOverlappedResult", reading),
+        ("WriteFile", writing),
+    ],
+)
+def test_a_port_that_is_lost(function: str, use: Callable[[Transport], object]) -> None:
+    """The adapter is removed while it is used: each number, in each function that has it."""
+    for number in [*ERRORS, 4711]:
+        if number == 995 and function == "GetOverlappedResult":  # pyserial takes it for no error
+            continue
+        with pytest.MonkeyPatch.context() as patched:
+            kernel = windows_ports(patched)
+            with port() as used:
+                kernel.failing = {function: number}
+                with pytest.raises(TransportClosed) as caught:
+                    use(used)
+                text = ERRORS[number].text if number in ERRORS else "Access is denied"
+                assert caught.value.message == f"COM3: the port is lost: {text} (Windows error {number})"
+                assert caught.value.hint == "check that the adapter is plugged in, and run again"
+                with pytest.raises(TransportClosed):  # it stays closed
+                    use(used)
+
+
+def test_a_write_that_windows_aborts_is_no_write(kernel: Kernel) -> None:
+    """pyserial takes it for no error, and returns how many bytes were written."""
+    with port() as used:
+        kernel.failing = {"GetOverlappedResult": 995}
+        with pytest.raises(TransportClosed, match="only 0 of 1 bytes were written"):
+            writing(used)
+
+
+def test_a_port_that_is_silent_is_not_lost(kernel: Kernel) -> None:
+    with port() as used:
+        for kernel.failing in ({}, {"GetOverlappedResult": 995}):
+            with pytest.raises(TransportTimeout):
+                reading(used)
+        kernel.failing = {}
+        writing(used)
+
+
+@each(
+    ("name", "file"),
+    [
+        ("COM3", "COM3"),
+        ("com3:", "COM3"),
+        ("COM10", r"\\.\COM10"),
+        ("com10:", r"\\.\COM10"),
+        (r"\\.\com10", r"\\.\COM10"),
+        ("//./COM3", "COM3"),
+        ("CNCA0", "CNCA0"),
+    ],
+)
+def test_the_file_that_windows_opens(name: str, file: str) -> None:
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(url, "WINDOWS", True)
+        kernel = windows_ports(patched)
+        with port(name):
+            pass
+        assert kernel.files == [file]
 
 
 def test_the_table_has_each_number_once() -> None:

@@ -16,6 +16,7 @@ from fatektool.files.atomic import read_bounded, require_place, write_whole
 from fatektool.files.times import utc
 from fatektool.jobs.fleet.alarms import TIME_LIMIT_S, Event, parse_command, run_command
 from fatektool.jobs.prometheus import Sample, doubled, exposition, sample, successes
+from fatektool.system.shell import program_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -91,7 +92,7 @@ class Alarms:
         self, command: str | tuple[str, ...], event: str, job: str, outcome: Outcome, voice: Voice
     ) -> None:
         if self._hangs >= _MOST_HANGS:
-            voice.warn(f"{outcome.name}: {command[0]} is not run: it timed out {_MOST_HANGS} times")
+            voice.warn(f"{outcome.name}: {program_of(command)} is not run: it timed out {_MOST_HANGS} times")
             return
         result = outcome.result
         happened = Event(

@@ -24,7 +24,7 @@ ignore_option = click.option(
     "--ignore",
     multiple=True,
     metavar="GLOB",
-    help="Data that are not compared: D100, 'D1??'. Can be given several times.",
+    help='Data that are not compared: D100, "D1??". Can be given several times.',
 )
 
 

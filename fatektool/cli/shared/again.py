@@ -10,7 +10,7 @@ from click.core import ParameterSource
 
 from fatektool.cli.shared.options import FilePath, standard
 from fatektool.files.atomic import STANDARD
-from fatektool.system.shell import command_line
+from fatektool.system.shell import own_command_line
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -32,7 +32,7 @@ def command_again(connection: Connection, *added: str, anywhere: bool = False) -
     context = click.get_current_context()
     names = context.command_path.split()[1:]
     port = context.get_parameter_source("port") is ParameterSource.ENVIRONMENT
-    words = ["fatektool", *names, *added, *(["-p", connection.address.target] if port else [])]
+    words = [*names, *added, *(["-p", connection.address.target] if port else [])]
     given = context.find_root().obj[len(names) :]
     for parameter, prefix, value in _parsed(context.command, given):
         if value in added or (parameter is not None and parameter.name == _LEFT_OUT):
@@ -40,7 +40,7 @@ def command_again(connection: Connection, *added: str, anywhere: bool = False) -
         whole = anywhere and parameter is not None and isinstance(parameter.type, FilePath)
         text = _whole(value) if whole else value
         words += [f"{prefix}{text}"] if prefix.endswith("=") or not prefix else [prefix, text]
-    return command_line(words)
+    return own_command_line(*words)
 
 
 def _parsed(

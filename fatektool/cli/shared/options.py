@@ -47,10 +47,18 @@ class FilePath(click.Path):
     """A file or folder as a ``pathlib.Path``, which is loaded when one is given; it need not be there."""
 
     def coerce_path_result(self, value: str | os.PathLike[str]) -> Path:
-        """Make one of what was given."""
+        """Make one of what was given.
+
+        Raises:
+            UsageError: on Windows the name opens a device, or is no file's name.
+        """
         from pathlib import Path
 
-        return Path(standard(os.fspath(value)))
+        from fatektool.files.portable_name import require_file_name
+
+        name = standard(os.fspath(value))
+        require_file_name(name)
+        return Path(name)
 
 
 PATH = FilePath()

@@ -25,7 +25,7 @@ Register-ArgumentCompleter -Native -CommandName %(prog_name)s -ScriptBlock {
             [System.Management.Automation.CompletionResult]::new($value, $value, "ParameterValue", $words)
         }
     } finally {
-        Remove-Item Env:COMP_WORDS, Env:COMP_CWORD, Env:%(complete_var)s
+        Remove-Item Env:COMP_WORDS, Env:COMP_CWORD, Env:%(complete_var)s -ErrorAction SilentlyContinue
     }
 }
 """
@@ -49,9 +49,12 @@ class PowerShellComplete(ShellComplete):
     source_template: ClassVar[str] = _POWERSHELL
 
     def get_completion_args(self) -> tuple[list[str], str]:
-        """The words before the one that is completed, and that one."""
-        words = os.environ["COMP_WORDS"].split("\n")[1:]
-        incomplete = os.environ["COMP_CWORD"]
+        """The words before the one that is completed, and that one.
+
+        PowerShell removes a variable that it sets to an empty text: no word is begun then.
+        """
+        words = os.environ.get("COMP_WORDS", "").split("\n")[1:]
+        incomplete = os.environ.get("COMP_CWORD", "")
         if incomplete and words and words[-1] == incomplete:
             words.pop()
         return words, incomplete

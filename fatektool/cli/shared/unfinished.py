@@ -182,12 +182,14 @@ def _lines(record: Unfinished, path: str) -> Iterator[str]:
 
 def forget(path: str | None, voice: Voice) -> None:
     """Remove a record: the write is complete, or undone."""
-    if path is None:
+    if path is None or not os.path.exists(path):  # noqa: PTH110
         return
+    from pathlib import Path
+
+    from fatektool.system.renaming import remove_file
+
     try:
-        os.unlink(path)  # noqa: PTH108
-    except FileNotFoundError:
-        return
+        remove_file(Path(path))
     except OSError as error:
         voice.warn(
             f"the record of a write that did not complete stays: cannot remove {path}: {error.strerror}"

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 TIME_LIMIT_S: Final = 30.0
+_NOT_A_PROGRAM: Final = 193
+"""ERROR_BAD_EXE_FORMAT of winerror.h: Windows starts no scripts but .bat and .cmd."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,6 +90,8 @@ def run_command(
     try:
         group = ProcessGroup(command, stdout=2, env=os.environ | event.environment())
     except (OSError, ValueError) as error:
+        if getattr(error, "winerror", None) == _NOT_A_PROGRAM:
+            return f"cannot start {program}: it is not a program; for a script name the program that runs it"
         return f"cannot start {program}: {getattr(error, 'strerror', None) or error}"
     try:
         code = group.process.wait(time_limit_s)

@@ -13,7 +13,7 @@ from fatektool.jobs.linetest.finding import Finding
 from fatektool.jobs.linetest.scan import scan
 from fatektool.jobs.linetest.scan_result import ScanResult, ScanSetting, Station
 from fatektool.protocol.line_settings import BAUDS, FORMATS
-from fatektool.system.shell import command_line
+from fatektool.system.shell import own_command_line
 from fatektool.transport.base import LineSettings
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def search(plc: Plc, on_step: Callable[[str, int, int], object]) -> ScanResult:
 def answers_elsewhere(plc: Plc, found: Station) -> Finding:
     """What the search found, with the whole command to use."""
     line, codec = found.setting.line, found.setting.codec
-    words = ["fatektool", "status", "-p", plc.target, "-s", str(found.station)]
+    words = ["status", "-p", plc.target, "-s", str(found.station)]
     where = ""
     if _is_serial(plc):
         words += ["--baud", str(line.baud), "--line", line.format]
@@ -69,7 +69,7 @@ def answers_elsewhere(plc: Plc, found: Station) -> Finding:
         fault=True,
         finding=f"station {found.station} answers{where}",
         evidence="one exchange of its brief status (40)",
-        advice=f"use: {command_line(words)}",
+        advice=f"use: {own_command_line(*words)}",
     )
 
 

@@ -20,6 +20,7 @@ from fatektool.callbacks import ignore
 from fatektool.errors import FatektoolError, FileWarning, UsageError
 from fatektool.files.atomic import file_error, require_folder, require_place, sync, write_new, write_whole
 from fatektool.files.times import stamp
+from fatektool.system.renaming import remove_file
 from fatektool.transport.lock import PortLock
 
 if TYPE_CHECKING:
@@ -123,7 +124,7 @@ def _drop_files(folder: Path, station: int, suffix: str, keep: Keep, now: dateti
     if not keep.days:
         old = [path for *_, path in dated[: -keep.number]]
     for path in old:
-        path.unlink(missing_ok=True)
+        remove_file(path)
 
 
 def append_line(

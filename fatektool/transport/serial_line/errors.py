@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import errno
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import FatektoolError, LineError, PortBusy, TransportClosed, UsageError
 from fatektool.transport.nearly import meant, next_step
@@ -68,17 +68,17 @@ def _windows_error(target: str, settings: LineSettings, error: Exception) -> Lin
                 f"{target}: cannot be used as a serial port at {settings}: {found.text} ({found})",
                 hint="check the name; check that the adapter supports this --baud and --line",
             )
-        case WindowsErrorKind.BROKEN:
-            return LineError(
-                f"{target}: {found.text} ({found})",
-                hint="unplug the adapter and plug it in again; if that does not help, install its "
-                "manufacturer's driver",
-            )
-        case WindowsErrorKind.GONE:
-            return LineError(
-                f"{target}: {found.text} ({found})",
-                hint="check that the adapter is plugged in; unplug it, plug it in again and run again",
-            )
+        case other:
+            return LineError(f"{target}: {found.text} ({found})", hint=_HINTS[other])
+
+
+_HINTS: Final = {
+    WindowsErrorKind.BROKEN: "unplug the adapter and plug it in again; if that does not help, install its "
+    "manufacturer's driver",
+    WindowsErrorKind.GONE: "check that the adapter is plugged in; unplug it, plug it in again and run again",
+    WindowsErrorKind.UNKNOWN: "check the adapter, its driver and the name; 'fatektool ports' lists the "
+    "serial ports",
+}
 
 
 def port_lost(target: str, reason: object) -> TransportClosed:

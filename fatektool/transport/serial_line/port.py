@@ -31,7 +31,7 @@ from fatektool.transport.serial_line.settings import (
     of_pty,
     set_dtr,
 )
-from fatektool.transport.serial_line.url import SEARCH, device_of, host_of
+from fatektool.transport.serial_line.url import SEARCH, device_of, host_of, opened_name
 from fatektool.transport.wait import readable, writable
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ def open_serial(
         return open_serial(device, settings, low_latency=low_latency, note=note)
     if pty:
         note(f"{target} is a pseudo terminal, which has no {settings.format}: opened as 8N1")
-    port = _open(target, of_pty(settings) if pty else settings)
+    port = _open(opened_name(target), of_pty(settings) if pty else settings)
     if low_latency and not pty and sys.platform == "linux" and "://" not in target:
         try:
             port.set_low_latency_mode(True)
@@ -181,12 +181,14 @@ class SerialTransport(Transport):
             self._closed = False
             self._first.clear()
         try:
-            self._port.write(data)
+            written = self._port.write(data)
         except (OSError, ValueError, TypeError, AttributeError) as error:
             if type(error).__name__ == "SerialTimeoutException":
                 self.renew()
                 raise TransportTimeout(f"{self.name}: the write blocked for {WRITE_TIMEOUT_S:g} s") from error
             raise self._gone(error) from error
+        if isinstance(written, int) and written < len(data):  # Windows aborts it when the adapter is removed
+            raise self._gone(OSError(f"only {written} of {len(data)} bytes were written"))
 
     def drain(self) -> bytes:
         """Return what was received already."""

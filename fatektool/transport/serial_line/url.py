@@ -28,7 +28,7 @@ SEARCH: Final = "hwgrep://"
 LOOP: Final = "loop://"
 
 
-_SEARCHES: Final = "expected hwgrep://REGEX, such as 'hwgrep://FT232' or 'hwgrep://0403:6001'"
+_SEARCHES: Final = 'expected hwgrep://REGEX, such as "hwgrep://FT232" or "hwgrep://0403:6001"'
 
 
 def require_place(target: str) -> None:
@@ -97,6 +97,11 @@ def line_name(target: str) -> str:
     if device is None:
         return target.upper()
     return port_name(device) if WINDOWS else os.path.realpath(device)  # COM3 is not a path
+
+
+def opened_name(target: str) -> str:
+    """The name by which pyserial opens a target: on Windows it takes no ``COM10:`` and no ``//./COM10``."""
+    return port_name(target) if WINDOWS and "://" not in target else target
 
 
 def _found(target: str) -> str:

@@ -20,7 +20,7 @@ from fatektool.errors import UsageError
 from fatektool.files.portable_name import device_of_name
 
 _PORT: Final = re.compile(r"(?:[\\/]{2}[.?][\\/])?(COM\d+):?", re.ASCII | re.IGNORECASE)
-_NUMBER: Final = re.compile(r"\w+\(-?\d+, .*, None, (\d+)\)", re.DOTALL)
+_ERROR: Final = re.compile(r"\w+\(-?\d+, (['\"])(.*)\1, None, (\d+)\)", re.DOTALL)
 
 
 class WindowsErrorKind(Enum):
@@ -31,6 +31,7 @@ class WindowsErrorKind(Enum):
     NOT_SUPPORTED = "not supported"
     BROKEN = "broken"
     GONE = "gone"
+    UNKNOWN = "unknown"
 
 
 class WindowsError(NamedTuple):
@@ -39,7 +40,7 @@ class WindowsError(NamedTuple):
     Attributes:
         number: of winerror.h.
         kind: what it means when the port is opened or set up; while it is used, the device is gone.
-        text: the meaning, the same in each language of the system.
+        text: the meaning, the same in each language of the system; of an unknown number the system's own.
     """
 
     number: int
@@ -105,20 +106,17 @@ def require_port(target: str, device: str) -> None:
         )
 
 
-def windows_number(error: BaseException) -> int | None:
-    """The number that Windows gave; None if the error is of another system.
+def windows_error(error: BaseException) -> WindowsError | None:
+    """The meaning of an error; None if it is of another system.
 
     Args:
         error: of pyserial, or the OSError itself.
     """
-    number = getattr(error, "winerror", None)
-    if isinstance(number, int):
-        return number
-    found = _NUMBER.search(str(error))
-    return int(found[1]) if found else None
-
-
-def windows_error(error: BaseException) -> WindowsError | None:
-    """The meaning of an error; None if it is of another system, or has no number of the table."""
-    number = windows_number(error)
-    return None if number is None else ERRORS.get(number)
+    number, text = getattr(error, "winerror", None), getattr(error, "strerror", None)
+    if not isinstance(number, int):
+        found = _ERROR.search(str(error))
+        if found is None:
+            return None
+        number, text = int(found[3]), re.sub(r"\\(.)", r"\1", found[2])
+    unknown = WindowsError(number, WindowsErrorKind.UNKNOWN, (text or "unknown error").rstrip(". "))
+    return ERRORS.get(number, unknown)

@@ -147,6 +147,16 @@ def fill(folder: Path) -> None:
     Path("before.json").unlink()
 
 
+def test_examples_are_for_each_shell() -> None:
+    """cmd.exe hands single quotes on, and PowerShell takes ``$`` and a backslash otherwise than sh."""
+    for name, command in commands().items():
+        assert "'" not in (command.epilog or ""), name
+        assert not re.search(r"-p '", command.help or ""), name
+    for example in examples():
+        if "completion" not in example:
+            assert not re.search(r"[$\\`]", example), example
+
+
 @pytest.mark.skipif(shutil.which("bash") is None, reason="the examples are for a shell")
 def test_the_examples_run_as_they_are_printed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)

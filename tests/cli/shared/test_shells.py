@@ -121,6 +121,9 @@ def test_powershell_is_asked_with_words_on_lines(
     monkeypatch.setenv("COMP_WORDS", "fatektool\nstatus\n--ba")
     monkeypatch.setenv("COMP_CWORD", "--ba")
     assert cli().out.startswith("--baud\tSpeed of the serial line.")
+    monkeypatch.setenv("COMP_WORDS", "fatektool\nhistory")
+    monkeypatch.delenv("COMP_CWORD")  # PowerShell removes a variable that it sets to an empty text
+    assert "export\t" in cli().out
     monkeypatch.setenv("_FATEKTOOL_COMPLETE", "powershell_source")
     assert "Register-ArgumentCompleter -Native -CommandName fatektool" in cli().out
 

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from fatektool.jobs.snapshots.snapshot import Snapshot
 
 
-@click.command("apply", epilog="Example: fatektool snapshot apply press-data.json -p sim: --yes --only 'R*'")
+@click.command("apply", epilog='Example: fatektool snapshot apply press-data.json -p sim: --yes --only "R*"')
 @click.argument("file", type=PATH)
 @click.option("--only", multiple=True, metavar="GLOB", help="Only these keys; repeat for more.")
 @write_options("values", "snapshot")

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @click.command(
-    "diff", epilog="Example: fatektool snapshot diff monday-data.json tuesday-data.json --ignore 'RT*'"
+    "diff", epilog='Example: fatektool snapshot diff monday-data.json tuesday-data.json --ignore "RT*"'
 )
 @click.argument("a", type=PATH)
 @click.argument("b", type=PATH)

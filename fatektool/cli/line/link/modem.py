@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 def modem_command() -> None:
     """The modem of port 1, as the PLC's registers set it.
 
-    To call a PLC through a modem on this computer, name it as the target: -p 'modem:/dev/ttyUSB0?number=…'.
+    To call a PLC through a modem on this computer, name it as the target: -p "modem:/dev/ttyUSB0?number=…".
     """
 
 

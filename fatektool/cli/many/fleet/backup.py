@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from fatektool.program.archive import Backup
 
 
-@click.command("backup", epilog="Example: fatektool fleet backup --dir backups --on-failure 'echo failed:'")
+@click.command("backup", epilog='Example: fatektool fleet backup --dir backups --on-failure "echo failed:"')
 @click.option(
     "--dir",
     "folder",

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from fatektool.jobs.fleet.rounds import Turn
 
 
-@click.command("verify", epilog="Example: fatektool fleet verify --on-change 'echo changed:'")
+@click.command("verify", epilog='Example: fatektool fleet verify --on-change "echo changed:"')
 @alarm_options(changes=True)
 @news_option
 @fleet_options

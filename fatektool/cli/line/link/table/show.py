@@ -21,6 +21,7 @@ from fatektool.jobs.plcports.toml_text import dump_table
 from fatektool.plcports.kinds import TableKind
 from fatektool.plcports.tables import place_faults
 from fatektool.plcports.versions import needs_of_table
+from fatektool.system.shell import own_command_line
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -99,7 +100,6 @@ def save_command(sr: str, file: Path, connection: Connection, voice: Voice, *, k
     for warning in host.warnings():
         voice.warn(warning)
     if faults:
-        voice.warn(
-            f"the table has {counted(len(faults), 'fault')}: 'fatektool link table check {file}' shows them"
-        )
+        check = own_command_line("link", "table", "check", str(file))
+        voice.warn(f"the table has {counted(len(faults), 'fault')}; to see them run: {check}")
     return 0

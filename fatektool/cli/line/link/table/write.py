@@ -29,7 +29,7 @@ from fatektool.jobs.plcports.tables import parse_start, plan_write
 from fatektool.jobs.plcports.toml import MAX_TOML, load_table
 from fatektool.plcports.tables import kind_of, place_faults
 from fatektool.plcports.versions import needs_of_table
-from fatektool.system.shell import quoted
+from fatektool.system.shell import own_command_line
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -89,9 +89,10 @@ def _require_good(file: Path, table: Table, faults: Sequence[Fault], *, force: b
     first = faults[0]
     place = "" if first.row is None else f"transaction {first.row}: "
     more = f" and {len(faults) - 1} more" if len(faults) > 1 else ""
+    check = own_command_line("link", "table", "check", str(file))
     raise DataError(
         f"{file}: the table has faults: {place}{first.reason}{more}: nothing was written",
-        hint=f"'fatektool link table check {quoted(str(file))}' shows all; --force writes it as it is",
+        hint=f"--force writes it as it is; to see all of them run: {check}",
         file=str(file),
         faults=fault_documents(kind_of(table), faults),
     )
