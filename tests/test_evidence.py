@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 
 from tests.root import ROOT
 from tests.rows import each
@@ -13,6 +14,7 @@ GRADES = set(re.findall(r"^\| (paper|[a-z ]+) \| [^|]+ \|$", TABLE.split("## ")[
 ROWS = re.findall(r"^\| ([a-z][a-z0-9-]+) \| ([^|]+) \| ([^|]+) \| ([^|]+) \|$", TABLE, re.MULTILINE)
 
 
+@cache
 def marked() -> dict[str, list[str]]:
     """Every mark in what is shipped, with the files that bear it."""
     files = [ROOT / "README.md"]

@@ -70,7 +70,7 @@ class Simulation:
             self.faults.power_on()
 
     def line(self, *, whole_answers: bool = False) -> SimulatedLine:
-        """A new line to the PLCs; ``whole_answers`` for a medium with datagrams."""
+        """A new line to the PLCs; ``whole_answers`` for each in one piece, as of datagrams."""
         return SimulatedLine(
             self.make_slave(self.plcs),
             self.faults,

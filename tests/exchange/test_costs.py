@@ -15,6 +15,7 @@ from fatektool import connect
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.listen.pty import PTY_SUPPORTED
 from fatektool.simulator.listen.servers import Server, running
+from fatektool.transport.memory import MemoryTransport
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -45,6 +46,27 @@ def counted() -> Iterator[Counter[str]]:
 def first_exchange(plc: Plc) -> None:
     """Find out whether the line echoes, as that costs an exchange of its own."""
     plc.brief_status()
+
+
+def test_within_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An answer of ``sim:`` is one piece, at any speed: only its last byte has a time that matters."""
+    read, sizes = MemoryTransport.read, []
+
+    def counting(line: MemoryTransport, most: int, timeout_s: float) -> bytes:
+        data = read(line, most, timeout_s)
+        sizes.append(len(data))
+        return data
+
+    monkeypatch.setattr(MemoryTransport, "read", counting)
+    with connect("sim:", baud=300) as plc:
+        first_exchange(plc)
+        sizes.clear()
+        began = plc.link.transport.clock()
+        plc.read_pages(range(PAGES))
+        took_s = plc.link.transport.clock() - began
+    assert len(sizes) == PAGES + 1  # and the fence
+    assert sizes[:-1] == [265] * PAGES
+    assert took_s > PAGES * 265 * 10 / 300  # on the clock of the line, on which it takes its time
 
 
 def test_over_tcp() -> None:

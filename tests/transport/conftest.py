@@ -4,8 +4,12 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.parts.conftest import pyserial_in_a_hurry
+
 if TYPE_CHECKING:
     from pathlib import Path
+
+__all__ = ["pyserial_in_a_hurry"]
 
 
 @pytest.fixture(autouse=True)

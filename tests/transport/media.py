@@ -103,7 +103,7 @@ def udp() -> Iterator[Medium]:
 
 
 @contextlib.contextmanager
-def over_pty(prefix: str) -> Iterator[Medium]:
+def over_pty(prefix: str, most: int = 1 << 18) -> Iterator[Medium]:
     master, slave = os.openpty()
     open_ends = [master]
 
@@ -117,8 +117,9 @@ def over_pty(prefix: str) -> Iterator[Medium]:
             yield Medium(
                 transport,
                 lambda data: send_all(master, data),
-                lambda count: receive_all(lambda most: os.read(master, most), count),
+                lambda count: receive_all(lambda size: os.read(master, size), count),
                 hang_up,
+                most=most,
             )
     finally:
         hang_up()
@@ -138,7 +139,7 @@ def device() -> Iterator[Medium]:
 
 @contextlib.contextmanager
 def spy_url() -> Iterator[Medium]:
-    with over_pty("spy://") as medium:
+    with over_pty("spy://", most=1 << 14) as medium:  # each byte is printed, too
         assert isinstance(medium.transport, SerialTransport)
         yield medium
 

@@ -1,51 +1,33 @@
-"""Ctrl-C, SIGTERM and SIGKILL in the middle of a backup and of a restore, over a paced line."""
+"""Ctrl-C, SIGTERM and SIGKILL in the middle of a backup and of a restore, while an answer is waited for."""
 
 from __future__ import annotations
 
 import json
 import signal
-import threading
-from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import pytest
 
 from fatektool.program.archive import load_backup, save_backup
-from tests.cli.running import Door, check, one_line, process, served, started
-from tests.guard import GUARD_S
+from tests.cli.running import check, one_line, process, served, started
+from tests.held import HeldAnswer
 from tests.program.samples import backup, program
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
 WORDS = 1200  # 20 pages
 OLD, NEW = program(WORDS, seed=1), program(WORDS, seed=2)
 
 
-@contextmanager
-def paced(operation: str, page: int) -> Iterator[tuple[Door, threading.Event]]:
-    """A PLC on a line on which a page takes 24 ms, and an event for the moment it is asked for this page."""
-    with served(OLD, baud=115200) as door:
-        device, asked = door.simulation.plcs[1], threading.Event()
-        original = getattr(device, operation)
-
-        def observed(number: int, *content: bytes) -> object:
-            if number == page:
-                asked.set()
-            return original(number, *content)
-
-        setattr(device, operation, observed)
-        yield door, asked
-
-
 @pytest.mark.parametrize("as_json", [False, True], ids=["words", "json"])
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_backup_is_interrupted(place: Path, number: signal.Signals, *, as_json: bool) -> None:
-    with paced("read_page", 10) as (door, asked):
+    with served(OLD) as door:
+        answer = HeldAnswer(door.simulation, "read_page", 10)
         command = started("backup", "x.json", "-p", door.target, *(["--json"] if as_json else []))
-        assert asked.wait(GUARD_S)
-        command.send_signal(number)
+        with answer:
+            command.send_signal(number)
         out, err = command.communicate()
     assert command.returncode == 130
     assert one_line(err) == "fatektool: interrupted"
@@ -59,11 +41,12 @@ def test_a_backup_is_interrupted(place: Path, number: signal.Signals, *, as_json
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_restore_is_interrupted_and_finished(place: Path, number: signal.Signals) -> None:
     save_backup(backup(NEW), place / "new.json")
-    with paced("write_page", 10) as (door, asked):
+    with served(OLD) as door:
+        answer = HeldAnswer(door.simulation, "write_page", 10)
         words = ["restore", "new.json", "-p", door.target, "--yes", "--single-pass", "--json"]
         command = started(*words)
-        assert asked.wait(GUARD_S)
-        command.send_signal(number)
+        with answer:
+            command.send_signal(number)
         out, err = command.communicate()
         assert command.returncode == 6
         error = json.loads(out)
@@ -86,12 +69,13 @@ def test_a_restore_is_interrupted_and_finished(place: Path, number: signal.Signa
 
 def test_a_restore_is_killed_and_finished_by_the_same_command(place: Path) -> None:
     save_backup(backup(NEW), place / "new.json")
-    with paced("write_page", 10) as (door, asked):
+    with served(OLD) as door:
+        answer = HeldAnswer(door.simulation, "write_page", 10)
         words = ["restore", "new.json", "-p", door.target, "--yes", "--changed-only", "--single-pass"]
         command = started(*words)
-        assert asked.wait(GUARD_S)
-        command.kill()
-        command.communicate()
+        with answer:
+            command.kill()
+            command.communicate()
         assert command.returncode == -signal.SIGKILL
         assert door.pages not in {OLD.pages, NEW.pages}
         (safety,) = place.glob("new.safety-*")

@@ -13,9 +13,8 @@ import pytest
 from fatektool.cli.app import app
 from fatektool.transport.trace_reader import TraceRecord, read_trace
 from tests.cli.programs.monitor.plant import IMAGE
-from tests.cli.running import process, started
-from tests.cli.shared.test_signals import paced
-from tests.guard import GUARD_S
+from tests.cli.running import OLD, process, served, started
+from tests.held import HeldAnswer
 from tests.project.files import backup_file
 
 if TYPE_CHECKING:
@@ -111,14 +110,15 @@ def test_a_command_that_nobody_answers(cli: Cli, press: Press, suffix: str) -> N
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_command_that_is_interrupted(place: Path, suffix: str, number: signal.Signals) -> None:
     trace = place / f"line{suffix}"
-    with paced("read_page", 10) as (door, asked):
+    with served(OLD) as door:
+        answer = HeldAnswer(door.simulation, "read_page", 5)
         command = started("backup", "x.json", "-p", door.target, "--trace", trace)
-        assert asked.wait(GUARD_S)
-        command.send_signal(number)
+        with answer:
+            command.send_signal(number)
         command.communicate()
     assert command.returncode == 130
     pages = [record.data for record in records(trace) if record.data[:5] == b"\x02014F"]
-    assert any(page[5:9] == b"000A" for page in pages)  # it may have gone on before the signal came
+    assert any(page[5:9] == b"0005" for page in pages)  # it may have gone on before the signal came
     decoded = process("decode", trace)
     # The interrupt may have come within an answer: that one is cut off, and no other.
     assert (decoded.code, decoded.out.count("fault:")) in {(0, 0), (5, 1)}
@@ -126,10 +126,11 @@ def test_a_command_that_is_interrupted(place: Path, suffix: str, number: signal.
 
 def test_a_command_that_is_killed_keeps_all_but_the_last_record(place: Path) -> None:
     trace = place / "line.ndjson"
-    with paced("read_page", 10) as (door, asked):
+    with served(OLD) as door:
+        answer = HeldAnswer(door.simulation, "read_page", 5)
         command = started("backup", "x.json", "-p", door.target, "--trace", trace)
-        assert asked.wait(GUARD_S)
-        command.kill()
-        command.communicate()
+        with answer:
+            command.kill()
+            command.communicate()
     lines = [json.loads(line) for line in trace.read_text(encoding="utf-8").splitlines()]
-    assert sum(line["direction"] == "rx" for line in lines) >= 10
+    assert sum(line["direction"] == "rx" for line in lines) >= 5

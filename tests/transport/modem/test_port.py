@@ -18,8 +18,9 @@ from fatektool.simulator.build import Simulation, build_simulation
 from fatektool.simulator.listen.servers import Server
 from fatektool.transport.base import LineSettings
 from fatektool.transport.serial_line.port import open_serial
-from tests.cli.running import OLD, check, one_line, process, started
+from tests.cli.running import OLD, check, one_line, started
 from tests.guard import GUARD_S
+from tests.held import HeldAnswer
 from tests.hurry import hurried
 from tests.transport.modem.scripted import SILENCE, ScriptedModem
 
@@ -59,10 +60,10 @@ def test_status_over_a_modem(place: Path, cli: Cli, *, echo: bool, figures: bool
     assert [command for command in modem.commands if "ATD" in command] == ["ATDT0228082192"] * 2
 
 
-def test_a_backup_over_a_modem_with_its_trace(place: Path) -> None:
+def test_a_backup_over_a_modem_with_its_trace(place: Path, cli: Cli) -> None:
     modem = ScriptedModem(plc=a_plc().line())
     with plugged_in(place, modem) as target:
-        done = process("backup", "x.json", "-p", target, "--baud", 115200, "--trace", "x.ndjson", "-v")
+        done = cli("backup", "x.json", "-p", target, "--baud", 115200, "--trace", "x.ndjson", "-v")
     assert done.code == 0, done
     assert load_backup(place / "x.json").program == OLD
     assert (modem.online, modem.hung_up) == (False, 1)
@@ -96,21 +97,13 @@ def test_silence_on_the_line_ends_after_its_time(place: Path, cli: Cli) -> None:
 @pytest.mark.parametrize("as_json", [False, True], ids=["words", "json"])
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_backup_that_is_interrupted_hangs_up(place: Path, number: signal.Signals, *, as_json: bool) -> None:
-    simulation, asked = build_simulation(baud=9600, ladder_words=4000), threading.Event()
-    device = simulation.plcs[1]
-    read_page = device.read_page
-
-    def observed(page: int) -> bytes:
-        if page == 3:
-            asked.set()
-        return read_page(page)
-
-    setattr(device, "read_page", observed)  # noqa: B010  # mypy lets no method be assigned
+    simulation = a_plc()
     modem = ScriptedModem(plc=simulation.line())
+    answer = HeldAnswer(simulation, "read_page", 3)
     with plugged_in(place, modem) as target:
         command = started("backup", "x.json", "-p", target, *["--json"] * as_json)
-        assert asked.wait(GUARD_S)
-        command.send_signal(number)
+        with answer:
+            command.send_signal(number)
         out, err = command.communicate()
     assert command.returncode == 130
     assert one_line(err) == "fatektool: interrupted"
@@ -145,10 +138,10 @@ def test_a_call_that_is_interrupted_before_its_outcome_is_given_up(
     assert modem.commands[-1] == "ATH"
 
 
-def test_a_killed_process_leaves_a_call_that_the_next_one_ends(place: Path) -> None:
+def test_a_killed_process_leaves_a_call_that_the_next_one_ends(place: Path, cli: Cli) -> None:
     modem = ScriptedModem(plc=a_plc().line(), guard_s=0.04, online=True)
     with plugged_in(place, modem) as target:
-        done = process("status", "--brief", "-p", target)
+        done = cli("status", "--brief", "-p", target)
     assert done.code == 0, done
     assert (modem.online, modem.hung_up) == (False, 2)
 

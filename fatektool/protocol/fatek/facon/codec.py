@@ -89,7 +89,8 @@ class FaconDecoder(Delimited):
             FrameError: bad bytes, dropped.
         """
         buffer = self._buffer
-        if (found := _FRAME.match(buffer)) and not buffer.rfind(STX, 0, found.end()):  # the usual case
+        found = _FRAME.match(buffer) if ETX in buffer else None
+        if found and not buffer.rfind(STX, 0, found.end()):  # the usual case
             parts = found.group(0, 1, 2, 3, 4)
             del buffer[: found.end()]
             return _checked(*parts)

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import TYPE_CHECKING
+
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
 from fatektool.errors import FrameError
+from fatektool.protocol.fatek.facon import codec
 from fatektool.protocol.fatek.facon.codec import FACON, frame_bytes, lrc, parse_frame
 from tests.protocol.decoding import decoded, framed, frames
 from tests.protocol.strategies import requests
 from tests.protocol.vectors import FRAMES
+
+if TYPE_CHECKING:
+    import re
 
 frame_raws = st.one_of(st.sampled_from(FRAMES), st.builds(FACON.encode, st.integers(0, 254), requests))
 noises = st.one_of(st.binary(max_size=40), st.text("\x02\x030123ABCDEF", max_size=40).map(str.encode))
@@ -40,6 +47,28 @@ def test_lrc_is_the_sum_at_every_length_of_a_frame(byte: int) -> None:
 @given(st.binary(max_size=505))
 def test_lrc_is_the_sum_of_any_bytes(data: bytes) -> None:
     assert lrc(data) == b"%02X" % (sum(data) % 256)
+
+
+def test_a_frame_that_is_received_byte_by_byte_is_looked_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Not at each byte, which would cost the square of its length."""
+    looked: list[int] = []
+
+    def match(buffer: bytearray) -> re.Match[bytes] | None:
+        looked.append(len(buffer))
+        return whole.match(buffer)
+
+    whole = codec._FRAME
+    monkeypatch.setattr(codec, "_FRAME", SimpleNamespace(match=match))
+    raw = frame_bytes(1, 0x4F, b"0" + b"A5" * 128)
+    decoder = FACON.decoder()
+    found = []
+    for at in range(len(raw)):
+        decoder.feed(raw[at : at + 1])
+        found.append(decoder.next_frame())
+    assert found[:-1] == [None] * (len(raw) - 1)
+    assert found[-1] is not None
+    assert found[-1].raw == raw
+    assert looked == [len(raw)]
 
 
 @pytest.mark.parametrize(
