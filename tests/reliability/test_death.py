@@ -259,7 +259,7 @@ def test_the_power_goes_at_a_page_that_a_restore_writes(
             assert f"  previous program  saved in {safety}" in [
                 line.replace(safety.name, str(safety)) for line in lines
             ]
-            assert lines[2].endswith("do not switch it to RUN")
+            assert lines[2].endswith("not known: do not switch it to RUN; STOP it if it runs")
             assert "--changed-only" in command
         door.simulation.power_on()
         again = cli(*words)

@@ -61,6 +61,8 @@ class DataRewrite:
 
     before: Final = ""
     """The program's part says it of both."""
+    mode: Final = ""
+    """This too."""
 
     def __init__(self, plc: Plc, plan: DataPlan) -> None:
         self._plc = plc
@@ -215,6 +217,9 @@ class DataRewrite:
         if self.not_taken:
             name, why = next(iter(self.not_taken.items()))
             raise PlcError(f"{named(self.not_taken)} did not take what was there before: {name}: {why}")
+
+    def look(self) -> None:
+        """Nothing is asked: a value that is uncertain is written again."""
 
     def states(self) -> list[tuple[str, str]]:
         """What the PLC holds of each value and each disabled discrete, in ranges."""

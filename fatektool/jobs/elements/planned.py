@@ -53,6 +53,7 @@ class PlannedValues:
     """
 
     before: Final = "its previous values"
+    mode: Final = ""
 
     def __init__(self, plc: Plc, changes: Sequence[RegisterChange], status: BriefStatus | None) -> None:
         self._plc = plc
@@ -126,6 +127,9 @@ class PlannedValues:
         if failed:
             names = named(str(each.element) for each in failed)
             raise PlcError(f"{names} did not take the previous value: {failed[0].reason}")
+
+    def look(self) -> None:
+        """Nothing is asked: a value that is uncertain is written again."""
 
     def states(self) -> list[tuple[str, str]]:
         """What the PLC holds of each value, in ranges."""

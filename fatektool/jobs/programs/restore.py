@@ -267,11 +267,10 @@ def carry_out(
             (rewrite,) if data is None else (rewrite, data),
             safety or SafetyBackup(plan.present, plan.wanted, Path(), None),
             "the restore did not complete",
-            "STOP: do not switch it to RUN",
             rollback=plan.options.rollback,
         )
         path = write_back(plc, whole, agree, mark=mark, progress=progress)
-        running = False
+        running = bool(rewrite.running)
         warnings += rewrite.warnings
     elif plan.options.run and not running:
         agree(None)

@@ -1,4 +1,8 @@
-"""A program as a part of a write that can be undone: the contents of the PLC are known page by page."""
+"""A program as a part of a write that can be undone: the contents of the PLC are known page by page.
+
+The PLC has to stay in STOP meanwhile. One that restarts may come back in RUN with half a program, so its mode
+is read again after each page that took more than one exchange, and at the end.
+"""
 
 from __future__ import annotations
 
@@ -30,6 +34,9 @@ class Rewrite:
         present: the program that is in the PLC.
         pages: which are written, in order; the others are in the PLC already. None: nothing is read back.
         running: True if the PLC runs, and is to be stopped.
+
+    Attributes:
+        running: True if the PLC is in RUN, as far as is known; None if it did not answer.
     """
 
     def __init__(
@@ -39,30 +46,45 @@ class Rewrite:
         self._wanted = wanted
         self._present = present
         self._pages = pages
-        self._running = running
+        self._may_stop = running
+        self.running: bool | None = running
         self._holds = dict.fromkeys(pages, _OLD)
         self._unread: set[int] = set()  # acknowledged, which does not prove that it was written
         self._again: list[int] = []
         self._foreign: list[int] = []
+        self._went_to_run = False
 
     @property
     def before(self) -> str:
         """What is said of a PLC that was not changed."""
         what = "program" if self._present.data is None else "program and data"
-        return f"its previous {what} and is in STOP"
+        mode = {True: "is in RUN", False: "is in STOP", None: "its mode is not known"}[self.running]
+        return f"its previous {what} and {mode}"
+
+    @property
+    def mode(self) -> str:
+        """What is said of the mode of a PLC whose program is incomplete."""
+        return {
+            True: "RUN: STOP it, its program is incomplete",
+            False: "STOP: do not switch it to RUN",
+            None: "not known: do not switch it to RUN; STOP it if it runs",
+        }[self.running]
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """What the user should know of a program that was verified in the end."""
-        if not self._again:
-            return ()
-        found = f"page {ranges(self._again)} was acknowledged but not stored, and was written again"
+        found = []
+        if self._again:
+            found.append(f"page {ranges(self._again)} was acknowledged but not stored, and was written again")
         if self._foreign:
-            found += (
+            found[-1] += (
                 f"; page {ranges(self._foreign)} held neither the previous nor the new program: was the PLC "
                 f"replaced, or is somebody else loading a program? The safety backup may be of another one"
             )
-        return (found,)
+        if self._went_to_run:
+            then = "it is in RUN now" if self.running else "it was stopped again"
+            found.append(f"the PLC went to RUN while its program was written, as after a restart: {then}")
+        return tuple(found)
 
     @property
     def untouched(self) -> bool:
@@ -88,14 +110,16 @@ class Rewrite:
                 f"this is not the PLC whose program was read ({changed})",
                 hint="check whether the PLC was replaced, then run the restore again",
             )
-        if status.flags.rom_pack or (status.flags.running and not self._running):
+        self.running = status.flags.running
+        if status.flags.rom_pack or (self.running and not self._may_stop):
             what = "got a ROM pack" if status.flags.rom_pack else "went to RUN"
             raise PlcNotReady(
                 f"the PLC {what} since its program was read",
                 hint="check whether the PLC was replaced, then run the restore again",
             )
-        if self._running:
+        if self._may_stop:
             self._plc.stop()
+            self.running = False
 
     def write(self, progress: Progress) -> None:
         """Write the pages in order, read the whole program back and compare.
@@ -103,7 +127,7 @@ class Rewrite:
         A page that reads back wrong is written once more: an acknowledged write that was not made.
 
         Raises:
-            PlcError: the PLC refused a page, or has other data now.
+            PlcError: the PLC refused a page, has other data now, or went to RUN and may not be stopped.
             LineError: no answer.
         """
         if not self._pages:
@@ -118,6 +142,21 @@ class Rewrite:
         previous = self._present.program
         self._write(previous, self._in(_NEW, _UNCERTAIN), _OLD, "rolling back", progress)
         self._prove(previous, _OLD, progress)
+
+    def look(self) -> None:
+        """Ask for the mode, then for the pages that may be written or not.
+
+        Raises:
+            PlcError: the PLC refuses.
+            LineError: no answer; what was not asked stays as it was.
+        """
+        self.running = None
+        self.running = self._plc.brief_status().flags.running
+        uncertain = self._in(_UNCERTAIN)
+        found = self._plc.read_pages(uncertain)
+        self._holds |= {
+            number: self._whose(number, page) for number, page in zip(uncertain, found, strict=True)
+        }
 
     def states(self) -> list[tuple[str, str]]:
         """What the PLC has, by page."""
@@ -135,6 +174,7 @@ class Rewrite:
             "pages_uncertain": self._in(_UNCERTAIN),
             "pages_old": self._in(_OLD),
             "pages_unread": self._acknowledged_only,
+            "mode": {True: "run", False: "stop", None: None}[self.running],
         }
 
     @property
@@ -149,6 +189,9 @@ class Rewrite:
     ) -> None:
         total = len(pages)
         done, before = 0, _OLD
+        counters = self._plc.link.counters
+        sent = 0
+        refused_at = -1
 
         def begin() -> None:
             """The next page may be on its way from now on."""
@@ -157,21 +200,28 @@ class Rewrite:
                 before = self._holds.get(pages[done], _OLD)
                 self._holds[pages[done]] = _UNCERTAIN
 
-        def taken(acknowledged: int) -> None:
-            nonlocal done
+        def taken(_: int) -> None:
+            nonlocal done, sent
             self._holds[pages[done]] = state
             self._unread.add(pages[done])
-            done = acknowledged
+            done += 1
+            if counters.exchanges > sent + 1:
+                self._keep_stopped()
+            sent = counters.exchanges
             progress(phase, done, total)
             begin()
 
         progress(phase, 0, total)
-        begin()
-        try:
-            self._plc.write_pages([(number, program.pages[number]) for number in pages], taken)
-        except PlcRefused:
-            self._holds[pages[done]] = before
-            raise
+        while done < total:
+            sent = counters.exchanges
+            begin()
+            try:
+                self._plc.write_pages([(number, program.pages[number]) for number in pages[done:]], taken)
+            except PlcRefused:
+                self._holds[pages[done]] = before
+                if refused_at == done or not self._keep_stopped():
+                    raise
+                refused_at = done
 
     def _prove(self, program: Program, state: str, progress: Progress) -> None:
         wrong = self._read_back(program, range(len(program.pages)), "reading back", progress)
@@ -185,12 +235,41 @@ class Rewrite:
                 f"the PLC acknowledged page {ranges(wrong)}, but has other data there",
                 hint="the PLC's program memory may be worn out or protected",
             )
-        words = self._plc.detailed_status().system.ladder_words
+        status = self._plc.detailed_status()
+        words = status.system.ladder_words
         if words != program.ladder_words:
             raise PlcError(
                 f"the PLC's ladder size is {words} words now, and was {program.ladder_words} before",
                 hint="check whether the PLC was replaced: see 'fatektool status'",
             )
+        self._note_mode(running=status.flags.running)
+
+    def _keep_stopped(self) -> bool:
+        """Read the mode, and STOP a PLC again that went to RUN by itself.
+
+        Returns:
+            True if it was in RUN.
+
+        Raises:
+            PlcNotReady: it is in RUN, and it was not agreed that it is stopped.
+            PlcError: it does not stop.
+            LineError: no answer.
+        """
+        if not self._note_mode(running=self._plc.brief_status().flags.running):
+            return False
+        if self.running:
+            raise PlcNotReady("the PLC went to RUN while its program was written")
+        return True
+
+    def _note_mode(self, *, running: bool) -> bool:
+        """The same, with the mode that was read; a PLC that must not be stopped stays in RUN."""
+        self.running = running
+        if running:
+            self._went_to_run = True
+            if self._may_stop:
+                self._plc.stop()
+                self.running = False
+        return running
 
     def _read_back(self, program: Program, pages: Sequence[int], phase: str, progress: Progress) -> list[int]:
         total = len(pages)

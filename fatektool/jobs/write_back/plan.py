@@ -19,6 +19,10 @@ class PlannedPart(Protocol):
         """What is said of the PLC if this part is known to be as it was; empty if another part says it."""
 
     @property
+    def mode(self) -> str:
+        """After a failure, the PLC's mode and what must not be done; empty if this part leaves it alone."""
+
+    @property
     def untouched(self) -> bool:
         """True if the PLC is known to hold what it held before, whatever was sent."""
 
@@ -41,6 +45,14 @@ class PlannedPart(Protocol):
 
     def put_back(self, progress: Progress) -> None:
         """Write what was there before, read it back and compare; the errors of ``write``."""
+
+    def look(self) -> None:
+        """After a failure, ask the PLC what it holds and does, as far as that is not known.
+
+        Raises:
+            PlcError: the PLC refuses.
+            LineError: no answer.
+        """
 
     def states(self) -> list[tuple[str, str]]:
         """What the PLC has after a failure, for people: ``("page 0-3", "the new program")``."""
@@ -84,12 +96,10 @@ class WritePlan:
         parts: what is written, in order.
         copy: of all that they change.
         failed: what is said if it ends half way.
-        mode: the mode that the PLC is in then, and what must not be done; empty if the write leaves it alone.
         rollback: write back the previous data if writing or reading back finally fails.
     """
 
     parts: tuple[PlannedPart, ...]
     copy: SafetyCopy
     failed: str
-    mode: str = ""
     rollback: bool = False

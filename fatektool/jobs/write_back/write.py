@@ -17,6 +17,7 @@ holds, and the same command again writes what is left: it finds the copy of the 
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -83,13 +84,21 @@ def write_back(
         except (Exception, KeyboardInterrupt) as error:
             # Whatever it is, a trace that cannot be written among it: what the PLC holds must be said.
             copy.needed = counters.writes != sent
-            refused = isinstance(error, PlcError) and all(part.untouched for part in plan.parts)
-            if refused or not copy.needed:
+            _look(plan)
+            known = isinstance(error, PlcError | LineError | KeyboardInterrupt)
+            if not copy.needed or (known and all(part.untouched for part in plan.parts)):
                 mark.end(complete=False)
                 raise _with(error, f"nothing was changed, the PLC holds {_before(plan)}") from None
             raise _failed(plan, copy.path, error, mark, progress) from error
         mark.end(complete=True)
     return copy.path
+
+
+def _look(plan: WritePlan) -> None:
+    """Ask the PLC what it holds and does now, after a failure, as far as it answers."""
+    with suppress(Exception, KeyboardInterrupt):  # the failure itself is what is said
+        for part in plan.parts:
+            part.look()
 
 
 def _with(error: Exception | KeyboardInterrupt, unchanged: str) -> BaseException:
@@ -116,6 +125,7 @@ def _failed(
                 part.put_back(progress)
         except (Exception, KeyboardInterrupt) as second:  # noqa: BLE001  # it is said, whatever it is
             cause = f"{cause}; and rolling back failed: {_cause(second)}"
+            _look(plan)
         else:
             mark.end(complete=False)
             return (LineError if isinstance(error, LineError) else PlcError)(
@@ -131,16 +141,18 @@ def _incomplete(plan: WritePlan, path: Path | None, cause: str) -> RestoreIncomp
     states = [state for part in plan.parts for state in part.states()]
     held = "; ".join(f"{what}: {holds}" for what, holds in states)
     saved = f"previous {plan.copy.what} {'not saved' if path is None else f'saved in {path}'}"
-    mode = f"the PLC is in {plan.mode}" if plan.mode else ""
+    mode = next((part.mode for part in plan.parts if part.mode), "")
     details = {key: value for part in plan.parts for key, value in part.details().items()}
     error = RestoreIncomplete(
-        "; ".join(filter(None, (f"{plan.failed} ({cause}): {held}", saved, mode))),
+        "; ".join(
+            (f"{plan.failed} ({cause}): {held}", saved, *([f"the PLC's mode is {mode}"] if mode else []))
+        ),
         hint="fix the cause and run the same command again: it writes what is left",
         cause=cause,
         **details,
         **_saved(plan, path),
     )
-    error.headline, error.mode, error.states = plan.failed, plan.mode, states
+    error.headline, error.mode, error.states = plan.failed, mode, states
     error.saved = error.details[plan.copy.key]
     return error
 

@@ -113,7 +113,7 @@ def test_a_restore_that_does_not_complete(press: Press, cli: Cli, *, as_json: bo
         *_, pages_new, pages_in_doubt, pages_old, saved, fix, command = lines
         said = lines[lines.index("fatektool: the restore did not complete") + 1 :]
         assert said[0] == f"  PLC               station 1 on {door.target}"
-        assert said[1] == "  mode              STOP: do not switch it to RUN"
+        assert said[1] == "  mode              not known: do not switch it to RUN; STOP it if it runs"
         assert said[2].startswith("  cause             ")
         assert pages_new == "  page 0-2          written but not read back"
         assert pages_in_doubt == "  page 3            uncertain"
@@ -126,6 +126,7 @@ def test_a_restore_that_does_not_complete(press: Press, cli: Cli, *, as_json: bo
             assert details["pages_written"] == [0, 1, 2]
             assert details["pages_uncertain"] == [3]
             assert details["pages_old"] == [4, 5, 6, 7]
+            assert details["mode"] is None
             assert details["safety_backup"] == str(safety)
             assert details["command"] == again
         else:

@@ -92,6 +92,7 @@ def test_the_power_goes_at_any_page(tmp_path: Path, write: int) -> None:
     assert error.details["pages_written"] == list(range(page))
     assert error.details["pages_uncertain"] == [page]
     assert error.details["pages_old"] == list(range(page + 1, PAGES))
+    assert error.details["mode"] is None
     told_right(error, bench)
     saved = f"previous program saved in {error.details['safety_backup']}"
     uncertain = f"page {page}: uncertain"
@@ -100,7 +101,7 @@ def test_the_power_goes_at_any_page(tmp_path: Path, write: int) -> None:
         "the restore did not complete (no answer",
         uncertain,
         saved,
-        "do not switch it to RUN",
+        "the PLC's mode is not known: do not switch it to RUN; STOP it if it runs",
         again,
     ):
         assert part in str(error)
@@ -110,6 +111,104 @@ def test_the_power_goes_at_any_page(tmp_path: Path, write: int) -> None:
     halves = 1 if write > 2 else 2  # with no page changed yet there is nothing half, and a new safety backup
     assert len(list(tmp_path.iterdir())) == halves
     assert all(load_backup(path).program == OLD for path in tmp_path.iterdir())
+
+
+def restart_at(bench: Bench, write: int, *, running: bool, made: bool) -> list[bool]:
+    """At a write of a page the PLC restarts, without an answer. Gives its mode at each later write."""
+    modes: list[bool] = []
+
+    def forge(seen: Seen, answer: bytes) -> bytes:
+        if seen.command == WRITE_PAGE and seen.number == write:
+            bench.device.running = running
+            if not made and seen.page is not None:
+                bench.device.pages[seen.page] = OLD.pages[seen.page]
+            return b""
+        return answer
+
+    def note(seen: Seen) -> None:
+        if seen.command == WRITE_PAGE and seen.number > write:
+            modes.append(bench.device.running)
+
+    bench.tap.forge, bench.tap.before = forge, note
+    return modes
+
+
+@pytest.mark.parametrize("made", [True, False])
+@pytest.mark.parametrize("write", range(1, PAGES + 1))
+def test_a_plc_that_restarts_in_run_is_stopped_again(tmp_path: Path, write: int, *, made: bool) -> None:
+    bench = Bench(OLD)
+    bench.device.running = True
+    modes = restart_at(bench, write, running=True, made=made)
+    result = put(bench, tmp_path, stop=True)
+    assert bench.pages == NEW.pages
+    assert not bench.device.running
+    assert (result.mode_before, result.mode_after) == ("run", "stop")
+    assert not any(
+        modes[(not made) :]
+    )  # a page whose write was lost is sent once more before its mode is read
+    warning = "the PLC went to RUN while its program was written, as after a restart: it was stopped again"
+    assert result.warnings == (warning,)
+
+
+@pytest.mark.parametrize("write", range(2, PAGES + 1))
+def test_a_plc_in_stop_that_restarts_in_run_is_not_written_further(tmp_path: Path, write: int) -> None:
+    bench = Bench(OLD)
+    modes = restart_at(bench, write, running=True, made=True)
+    with pytest.raises(RestoreIncomplete) as caught:
+        put(bench, tmp_path)
+    assert bench.device.running
+    assert not modes
+    assert caught.value.details["mode"] == "run"
+    assert caught.value.details["cause"] == "the PLC went to RUN while its program was written"
+    assert "the PLC's mode is RUN: STOP it, its program is incomplete" in caught.value.message
+    told_right(caught.value, bench)
+    bench.device.running = False
+    finish(bench, tmp_path, caught.value)
+
+
+def test_a_plc_that_restarts_in_stop_is_written_to_the_end(tmp_path: Path) -> None:
+    bench = Bench(OLD)
+    restart_at(bench, 4, running=False, made=False)
+    result = put(bench, tmp_path)
+    assert bench.pages == NEW.pages
+    assert (result.mode_after, result.warnings) == ("stop", ())
+
+
+@pytest.mark.parametrize("stop", [True, False])
+def test_a_plc_that_goes_to_run_after_the_last_page(tmp_path: Path, *, stop: bool) -> None:
+    bench = Bench(OLD)
+    bench.device.running = stop
+
+    def switch(seen: Seen) -> None:
+        if (seen.command, seen.number) == (WRITE_PAGE, PAGES):
+            bench.device.running = True
+
+    bench.tap.after = switch
+    result = put(bench, tmp_path, stop=stop)
+    assert bench.pages == NEW.pages
+    assert bench.device.running is not stop
+    assert result.mode_after == ("stop" if stop else "run")
+    assert result.warnings[0].endswith("it was stopped again" if stop else "it is in RUN now")
+
+
+@pytest.mark.parametrize("rollback", [True, False])
+def test_a_plc_that_is_silent_to_every_write_holds_its_previous_program(
+    tmp_path: Path, *, rollback: bool
+) -> None:
+    """As an FBs may be, whose protocol has no 50: it answers everything else, so what it holds is known."""
+    bench = Bench(OLD)
+
+    def ignore(seen: Seen) -> None:
+        if seen.command == WRITE_PAGE and seen.page is not None:
+            bench.device.pages[seen.page] = OLD.pages[seen.page]
+
+    bench.tap.after = ignore
+    bench.tap.forge = lambda seen, answer: b"" if seen.command == WRITE_PAGE else answer
+    with pytest.raises(
+        LineError, match="nothing was changed, the PLC holds its previous program and is in STOP"
+    ):
+        put(bench, tmp_path, rollback=rollback)
+    assert bench.pages == OLD.pages
 
 
 def test_the_power_goes_again_and_again(tmp_path: Path) -> None:
@@ -154,10 +253,21 @@ def test_ctrl_c_at_any_page(tmp_path: Path, page: int, when: str) -> None:
             raise KeyboardInterrupt
 
     setattr(bench.tap, when, interrupt)
+    changed_pages = page - (when == "before")
+    if changed_pages < 1:  # page 0, the header, is the same in both
+        with pytest.raises(
+            KeyboardInterrupt, match="nothing was changed, the PLC holds its previous program"
+        ):
+            put(bench, tmp_path)
+        assert bench.pages == OLD.pages
+        return
     with pytest.raises(RestoreIncomplete, match=r"did not complete \(interrupted\)") as caught:
         put(bench, tmp_path)
-    assert caught.value.details["pages_written"] == list(range(page))
-    assert caught.value.details["pages_uncertain"] == [page]
+    written = page + (when == "after")
+    assert caught.value.details["pages_written"] == list(range(written))
+    assert caught.value.details["pages_old"] == list(range(written, PAGES))
+    assert caught.value.details["pages_uncertain"] == []
+    assert caught.value.details["mode"] == "stop"
     told_right(caught.value, bench)
     finish(bench, tmp_path, caught.value)
 
@@ -178,7 +288,10 @@ def test_ctrl_c_before_the_first_page_is_sent(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("phase", "done"),
-    [(phase, done) for phase in ("writing", "reading back") for done in range(phase == "writing", PAGES + 1)],
+    [  # page 0, the header, is the same in both programs: with it alone nothing is changed
+        *(("writing", done) for done in range(2, PAGES + 1)),
+        *(("reading back", done) for done in range(PAGES + 1)),
+    ],
 )
 def test_ctrl_c_between_two_pages(tmp_path: Path, phase: str, done: int) -> None:
     bench = Bench(OLD)

@@ -90,7 +90,7 @@ class Machine:
             PlannedValues(plc, changes, brief_or_none(plc)),
         )
         copy = Copy(present, self.folder)
-        return WritePlan(parts, copy, "the machine is not back", "STOP", rollback=self.rollback)
+        return WritePlan(parts, copy, "the machine is not back", rollback=self.rollback)
 
     def write(self, agree: Agree = lambda _: None) -> Path | None:
         plan = self.plan()
@@ -165,7 +165,7 @@ def test_what_cannot_be_prepared_leaves_nothing(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("command", "number", "held"),
     [
-        (WRITE_PAGE, 3, ["page 0-1: written but not read back", "page 2: uncertain",
+        (WRITE_PAGE, 3, ["page 2: the new program", "page 0-1: written but not read back",
                          "page 3-7: the previous program", "R0-R99: the previous value"]),
         (WRITE_REGISTERS, 1, ["page 0-7: the new program", "R0-R63: uncertain",
                               "R64-R99: the previous value"]),
@@ -184,7 +184,7 @@ def test_each_part_says_what_the_plc_holds(
     assert [f"{place}: {holds}" for place, holds in error.states] == held
     assert error.message == (
         f"the machine is not back (the line broke): {'; '.join(held)}; previous program and values saved "
-        f"in {tmp_path / 'copy.json'}; the PLC is in STOP"
+        f"in {tmp_path / 'copy.json'}; the PLC's mode is STOP: do not switch it to RUN"
     )
     assert error.details["values_old"] == [
         span for span in ("R0-R99", "R64-R99") if f"{span}: the previous value" in held
