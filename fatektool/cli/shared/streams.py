@@ -132,6 +132,8 @@ def print_bytes(data: bytes) -> None:
 def mend_streams() -> None:
     """Put streams that can always be written in place of the standard ones, also of those that are closed."""
     out, err = sys.stdout, sys.stderr
+    if _WINDOWS:
+        _know_nul()
     for name, mode in (("stdin", os.O_RDONLY), ("stdout", os.O_WRONLY), ("stderr", os.O_WRONLY)):
         if getattr(sys, name) is None:  # what is opened next must not get its descriptor
             null = os.open(os.devnull, mode)  # stays open
@@ -153,6 +155,17 @@ def mend_streams() -> None:
         )
         made.stands_in = out is None
         sys.stdout = made
+    if _WINDOWS:
+        _know_nul()
+
+
+def _know_nul() -> None:
+    """Let no stream pass for a terminal on Windows that is none: NUL, from which nobody answers."""
+    from fatektool.system.terminal import is_terminal
+
+    for stream in (sys.stdin, sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper) and stream.isatty() and not is_terminal(stream):
+            stream.isatty = lambda: False  # type: ignore[method-assign]  # for all who ask
 
 
 def output_loss() -> OSError | None:
