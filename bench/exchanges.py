@@ -1,6 +1,6 @@
 """The requests of each job with the lengths of their answers, made by hand: what a bare loop sends.
 
-They are the fewest that could do the job, and owe nothing to the tool: no fence, no second look.
+They are the fewest that could do the job, and owe nothing to the tool: no fence, no second status.
 """
 
 from __future__ import annotations
@@ -57,8 +57,13 @@ def verify(pages: int) -> list[Exchange]:
 
 
 def restore(pages: int, differ: Sequence[int], changed: Sequence[tuple[int, bytes]]) -> list[Exchange]:
-    """The present program, what is not in the file a second time, the pages to write, and all read back."""
-    return [*known(pages, differ), *writing(changed), *reading(pages)]
+    """The present program, what is not in the file a second time, the pages to write, and all read back.
+
+    A second time also the pages beside those: they would differ too if the program changed meanwhile.
+    """
+    beside = {page + step for page in differ for step in (-1, 0, 1)}
+    again = sorted(page for page in beside if 0 <= page < pages)
+    return [*known(pages, again), *writing(changed), *reading(pages)]
 
 
 def snapshot() -> list[Exchange]:
