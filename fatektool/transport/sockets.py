@@ -9,8 +9,7 @@ from __future__ import annotations
 import contextlib
 import socket
 from abc import abstractmethod
-from math import ceil
-from typing import TYPE_CHECKING, Final, cast
+from typing import TYPE_CHECKING, cast
 
 from fatektool.errors import LineError, TransportClosed, TransportTimeout
 from fatektool.transport.base import DRAIN_LIMIT, WRITE_TIMEOUT_S, Transport
@@ -18,10 +17,6 @@ from fatektool.transport.wait import readable, writable
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-_TIMEOUT_STEP_S: Final = 0.005
-_LONGEST_WAIT_S: Final = 86400.0
-"""A wait may be shorter than asked, and no system counts the milliseconds of a month."""
 
 Address = tuple[str, int] | tuple[str, int, int, int]
 """IP address and port; for IPv6 also flow and scope, which a link-local address needs."""
@@ -84,8 +79,7 @@ class SocketTransport(Transport):
         """Receive at least one byte, or raise ``BlockingIOError`` or ``TransportClosed``."""
 
     def _use(self, connected: socket.socket) -> socket.socket:
-        connected.settimeout(0)
-        self._timeout_s = self._asked_s = 0.0
+        connected.setblocking(False)  # noqa: FBT003
         self._socket = connected
         self._readable = readable(connected.fileno())
         self._writable = writable(connected.fileno())
@@ -111,24 +105,15 @@ class SocketTransport(Transport):
         if connected is None:
             raise TransportClosed(f"{self.name}: the connection is closed")
         try:
-            if timeout_s != self._asked_s:  # seldom
-                self._set_timeout(connected, timeout_s)
-            data = self._receive(connected, max_bytes)
-        except (TimeoutError, BlockingIOError):
-            raise TransportTimeout(f"{self.name}: nothing received within {timeout_s:.3f} s") from None
+            # Waiting by the socket's own time-out would have each write wait too: a system call more.
+            data = self._receive(connected, max_bytes) if self._readable(timeout_s) else b""
+        except BlockingIOError:  # it was a datagram with a wrong checksum
+            data = b""
         except OSError as error:
             raise self._broken(error) from error
-        if not data:  # a datagram with a wrong checksum, or an empty one
-            raise TransportTimeout(f"{self.name}: nothing received")
+        if not data:
+            raise TransportTimeout(f"{self.name}: nothing received within {timeout_s:.3f} s")
         return data
-
-    def _set_timeout(self, connected: socket.socket, timeout_s: float) -> None:
-        """Rounded, so that it seldom changes: each change is a system call."""
-        wait_s = max(0.0, ceil(min(timeout_s, _LONGEST_WAIT_S) / _TIMEOUT_STEP_S) * _TIMEOUT_STEP_S)
-        if wait_s != self._timeout_s:
-            connected.settimeout(wait_s)
-            self._timeout_s = wait_s
-        self._asked_s = timeout_s
 
     def write(self, data: bytes) -> None:
         """Send all of ``data``; connect first if the connection was lost."""
@@ -138,7 +123,7 @@ class SocketTransport(Transport):
             while rest:
                 try:
                     rest = rest[connected.send(rest) :]
-                except (TimeoutError, BlockingIOError):
+                except BlockingIOError:
                     if not self._writable(WRITE_TIMEOUT_S):
                         self.close()
                         raise TransportTimeout(

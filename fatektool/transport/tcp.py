@@ -68,7 +68,6 @@ class TcpTransport(SocketTransport):
 
         if self._socket is not None:  # bytes received before a reset can still be read
             with contextlib.suppress(OSError):
-                self._socket.settimeout(0)
                 self._first += self._socket.recv(MOST_SAID)
         text = said_text(bytes(self._first))
         return f", after it sent {text!r}" if text else ""

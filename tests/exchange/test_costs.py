@@ -83,11 +83,12 @@ def test_over_tcp() -> None:
     assert reading["send"] == exchanges
     assert reading["recv"] == exchanges  # an answer is one piece here
     waits = "poll" if hasattr(select, "poll") else "select"
-    assert reading[waits] <= exchanges + 2  # is there anything beside the answer?
-    assert reading["settimeout"] <= 4
+    # For the answer, and whether there is anything beside it. A socket with a time-out would wait by itself,
+    # before it sends too, and this count would not see it: so it has none.
+    assert reading[waits] <= 2 * exchanges + 2
     assert writing["send"] == writing["recv"] == len(pages)
-    assert writing[waits] <= len(pages) + 2
-    assert set(reading + writing) <= {"send", "recv", waits, "settimeout"}
+    assert writing[waits] <= 2 * len(pages) + 2
+    assert set(reading + writing) <= {"send", "recv", waits}
 
 
 @pytest.mark.skipif(not PTY_SUPPORTED, reason="this system has no pseudo terminals")
