@@ -27,14 +27,14 @@ def slave() -> FaconSlave:
         b"\x020140\x03",
         b"\x0201\x03",
         STATUS[:-3] + b"C8\x03",
-        STATUS[:-3] + b"c7\x03",
+        STATUS[:-3] + b"c8\x03",
         STATUS[:-3] + b"+7\x03",
         STATUS[:-3] + b"7\x03",
         frame("40", station=2),
         frame("40", station=0xFF),
         b"\x020g40FD\x03",
         b"\x02 140B7\x03",
-        b"\x020a41F8\x03",
+        b"\x020a41f9\x03",
         b"\x02" + b"0" * MAX_FRAME + b"\x03",
     ],
 )
@@ -43,11 +43,17 @@ def test_silent(slave: FaconSlave, silent: bytes) -> None:
     assert len(answers(slave, STATUS)) == 1
 
 
-def test_lower_case_station_is_no_station() -> None:
+def test_a_checksum_in_lower_case_is_read(slave: FaconSlave) -> None:
+    """As some clients in the field send it; the answer has upper case."""
+    assert answers(slave, b"\x020140c7\x03") == answers(slave, b"\x020140C7\x03")
+
+
+def test_a_station_in_lower_case_is_read() -> None:
     slave = FaconSlave({0x1A: SimulatedPlc(0x1A)})
-    body = b"\x021a40"
-    assert answers(slave, body + b"%02X\x03" % (sum(body) % 256)) == []
-    assert len(answers(slave, frame("40", station=0x1A))) == 1
+    small = b"\x021a40"
+    (answer,) = answers(slave, small + b"%02x\x03" % (sum(small) % 256))
+    assert [answer] == answers(slave, frame("40", station=0x1A))
+    assert answer.startswith(b"\x021A400")
 
 
 def test_stx_starts_afresh(slave: FaconSlave) -> None:

@@ -4,7 +4,8 @@ r"""FACON ASCII frames; requests and answers have the same form (FACON paper, se
 
     STX(02) · station(2 hex) · command(2 hex) · data(0..500) · LRC(2 hex) · ETX(03)
 
-The LRC is the sum of all bytes from STX to the last of the data, modulo 256, in two capital hex digits.
+The LRC is the sum of all bytes from STX to the last of the data, modulo 256. Hex digits are written as
+capitals; small ones, which some devices send, are read too.
 
 STX is never inside a frame, so a second one before ETX begins a new frame (``resync``). A frame of more than
 508 bytes without ETX is dropped.
@@ -38,8 +39,7 @@ _LOOPBACK: Final = Command.LOOPBACK
 
 _PAIRS: Final = [b"%02X" % value for value in range(256)]
 _ENDS: Final = [pair + ETX for pair in _PAIRS]
-_VALUES: Final = {pair: value for value, pair in enumerate(_PAIRS)}
-_FRAME: Final = re.compile(rb"\x02([0-9A-F]{2})([0-9A-F]{2})([^\x03]{0,%d})([^\x03]{2})\x03" % MAX_DATA)
+_FRAME: Final = re.compile(rb"\x02([0-9A-Fa-f]{2})([0-9A-Fa-f]{2})([^\x03]{0,%d})([^\x03]{2})\x03" % MAX_DATA)
 
 
 def lrc(data: bytes) -> bytes:
@@ -113,7 +113,7 @@ def parse_frame(raw: bytes) -> Frame:
             f"invalid frame: expected STX to ETX, {FRAMING_BYTES} to {MAX_FRAME} bytes, got {len(raw)} bytes",
             raw=raw,
         )
-    raise FrameError("station or command is not two capital hex digits", raw=raw)
+    raise FrameError("station or command is not two hex digits", raw=raw)
 
 
 def _checked(raw: bytes, station: bytes, command: bytes, data: bytes, checksum: bytes) -> Frame:
@@ -123,10 +123,10 @@ def _checked(raw: bytes, station: bytes, command: bytes, data: bytes, checksum: 
         FrameError: the checksum is wrong.
     """
     expected = lrc(raw[:-3])
-    if checksum != expected:
+    if checksum != expected and checksum.upper() != expected:
         got = checksum.decode("latin-1")
         raise FrameError(f"checksum: expected {expected.decode()}, got {got!r}", raw=raw, checksum=True)
-    return Frame(_VALUES[station], _VALUES[command], data, raw)
+    return Frame(int(station, 16), int(command, 16), data, raw)
 
 
 class FaconCodec(FatekCodec):

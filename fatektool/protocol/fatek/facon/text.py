@@ -1,4 +1,6 @@
-"""The notation of FACON data fields: characters, only capital letters (FACON paper, section 4.1).
+"""The notation of FACON data fields: characters (FACON paper, section 4.1).
+
+Symbols have only capital letters. Hex digits are written as capitals; small ones are read too.
 
 ::
 
@@ -19,7 +21,7 @@ from fatektool.protocol.fatek.notation import Notation
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-HEX_DIGITS: Final = b"0123456789ABCDEF"
+HEX_DIGITS: Final = b"0123456789ABCDEFabcdef"
 _LETTERS: Final = b"ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
 
@@ -39,13 +41,11 @@ class TextNotation(Notation):
         return data.hex().upper().encode()
 
     def take_octets(self, raw: bytes) -> bytes:
-        """Bytes of capital hex digits; anything else is a ``FrameError``."""
+        """Bytes of hex digits; anything else is a ``FrameError``."""
         try:
-            if raw == raw.upper():
-                return unhexlify(raw)
+            return unhexlify(raw)
         except ValueError:
-            pass
-        raise FrameError("expected capital hex digits in pairs", raw=raw)
+            raise FrameError("expected hex digits in pairs", raw=raw) from None
 
     def bits(self, values: Iterable[bool]) -> bytes:
         """Discretes, one character each."""

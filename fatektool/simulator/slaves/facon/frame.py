@@ -6,7 +6,7 @@
     02   2 hex    2        0..500 char  2 hex   03
 
 LRC is the sum of all bytes from STX to the last of the data, modulo 256 (FACON paper, section 2).
-Hex digits are upper case. A frame with other ones is not answered, like a frame with a wrong LRC.
+Hex digits are written in upper case. Station and LRC are read in lower case too, as some clients send them.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ MAX_FRAME = MIN_FRAME + 500
 HEX2 = [f"{value:02X}".encode("ascii") for value in range(256)]
 BYTE_OF = {text: value for value, text in enumerate(HEX2)}
 """Two upper-case hex digits to their value: stricter than int(), which accepts ``+1`` and ``1_``."""
+_BYTE_OF_EITHER = {text.lower(): value for text, value in BYTE_OF.items()} | BYTE_OF
 
 _STX = b"\x02"
 _ETX = b"\x03"
@@ -56,9 +57,9 @@ class FaconCutter:
 
 def station_of(frame: bytes) -> int | None:
     """The station of a frame; None if its station or LRC is wrong."""
-    if BYTE_OF.get(frame[-3:-1]) != sum(frame[:-3]) & 0xFF:
+    if _BYTE_OF_EITHER.get(frame[-3:-1]) != sum(frame[:-3]) & 0xFF:
         return None
-    return BYTE_OF.get(frame[1:3])
+    return _BYTE_OF_EITHER.get(frame[1:3])
 
 
 def sealed(body: bytes) -> bytes:

@@ -100,7 +100,7 @@ class FaconSlave(FatekSlave):
 
     def framed(self, request: RequestFrame, data: bytes) -> bytes:
         """The answer to a request with this data."""
-        return facon_frame.sealed(request.raw[:5] + data)
+        return facon_frame.sealed(_head(request) + data)
 
     def error(self, code: int) -> bytes:
         """One hex digit."""
@@ -111,7 +111,7 @@ class FaconSlave(FatekSlave):
         command = request.command
         if command not in {_READ_PAGE, _DETAILED_STATUS}:
             return super().execute(plc, request)
-        head = request.raw[:5] + self._good_if_any
+        head = _head(request) + self._good_if_any
         try:
             if command == _READ_PAGE:  # cached: a whole program is read by it
                 return _page_answer(head, plc.read_page(_page_number(request.data)))
@@ -119,6 +119,11 @@ class FaconSlave(FatekSlave):
             return facon_frame.sealed(head + to_hex(plc.detailed_status()))
         except Refusal as refusal:
             return self.framed(request, self.error(refusal.code))
+
+
+def _head(request: RequestFrame) -> bytes:
+    """STX, the station in upper case, the command as it was sent."""
+    return b"\x02" + facon_frame.HEX2[request.station] + request.command
 
 
 def _page_number(data: bytes) -> int:

@@ -28,7 +28,7 @@ from fatektool.protocol.elements import Element
 from fatektool.protocol.fatek.facon.codec import FACON
 from fatektool.protocol.fatek.facon.data import DATA
 from fatektool.protocol.plc_errors import MEANINGS, PROGRAM_REFUSED, asked, refusal
-from fatektool.protocol.status import DetailedStatus
+from fatektool.protocol.status import BriefStatus, DetailedStatus
 from tests.protocol.strategies import BY_COMMAND
 from tests.protocol.vectors import EXAMPLES, FBE_28MC_BYTES
 from tests.rows import each
@@ -63,12 +63,11 @@ def test_every_command_is_drawn() -> None:
         (0x42, b"1R00016", "expected a discrete"),
         (0x42, b"1X0016 ", "1 more characters than expected"),
         (0x42, b"1X016", "X: expected 4 decimal digits"),
-        (0x43, b"0", "expected capital hex digits in pairs"),
-        (0x43, b"", "expected capital hex digits in pairs"),
+        (0x43, b"0", "expected hex digits in pairs"),
+        (0x43, b"", "expected hex digits in pairs"),
         (0x43, b"07", "expected an element at character 2"),
-        (0x44, b"0aX0000", "expected capital hex digits"),
-        (0x44, b"+1X0000", "expected capital hex digits"),
-        (0x44, b" 1X0000", "expected capital hex digits"),
+        (0x44, b"+1X0000", "expected hex digits"),
+        (0x44, b" 1X0000", "expected hex digits"),
         (0x44, b"01x0000", "expected an element at character 2"),
         (0x44, b"01X+001", "expected 4 decimal digits"),
         (0x44, b"01X1_00", "expected 4 decimal digits"),
@@ -89,10 +88,9 @@ def test_every_command_is_drawn() -> None:
         (0x46, b"01WY0009", "multiple of 8"),
         (0x46, b"01R65536", "out of range"),
         (0x47, b"02R0000010A5", "expected 2 values, got 1"),
-        (0x47, b"01R0000010a5", "expected capital hex digits"),
-        (0x47, b"01R00000+0A5", "expected capital hex digits"),
-        (0x47, b"01R00000 0A5", "expected capital hex digits"),
-        (0x47, b"01R000001_0A", "expected capital hex digits"),
+        (0x47, b"01R00000+0A5", "expected hex digits"),
+        (0x47, b"01R00000 0A5", "expected hex digits"),
+        (0x47, b"01R000001_0A", "expected hex digits"),
         (0x47, b"01R0000010A", "in pairs"),
         (0x47, b"01DR0000010A5", "expected values of 32 bits"),
         (0x48, b"00", "expected 1 to 64 words in total"),
@@ -110,11 +108,9 @@ def test_every_command_is_drawn() -> None:
         (0x4F, b"000", "in pairs"),
         (0x4F, b"00", "expected a page number of 4 hex digits"),
         (0x4F, b"00000", "1 more characters than expected"),
-        (0x4F, b"00c0", "expected capital hex digits"),
         (0x50, b"0000", "expected 128 bytes, got 0"),
         (0x50, b"0000" + PAGE_HEX[:-2], "expected 128 bytes, got 127"),
         (0x50, b"0000" + PAGE_HEX + b"00", "expected 128 bytes, got 129"),
-        (0x50, b"0000" + PAGE_HEX.lower(), "expected capital hex digits"),
     ],
 )
 def test_no_request(command: int, data: bytes, why: str) -> None:
@@ -130,8 +126,7 @@ WRONG_ANSWERS: list[tuple[Request[Any], bytes, str]] = [
     (ReadBriefStatus(), b"0", "expected 7 characters of data, got 1"),
     (ReadBriefStatus(), b"02900000", "expected 7 characters of data, got 8"),
     (ReadBriefStatus(), b"1290000", "expected the error character 0"),
-    (ReadBriefStatus(), b"02900a0", "expected capital hex digits"),
-    (ReadBriefStatus(), b"0+29000", "expected capital hex digits"),
+    (ReadBriefStatus(), b"0+29000", "expected hex digits"),
     (RunStop(run=True), b"", "answer to RUN: expected 1 characters of data, got 0"),
     (RunStop(run=False), b"00", "answer to STOP: expected 1 characters"),
     (RunStop(run=True), b"x", "expected the error character 0"),
@@ -141,10 +136,9 @@ WRONG_ANSWERS: list[tuple[Request[Any], bytes, str]] = [
     (ReadDiscretes(X0, 6), b"001011 ", "expected 0 or 1"),
     (ReadDisabled(X0, 256), b"0", "expected 257 characters of data, got 1"),
     (ReadRegisters(R0, 1), b"010A", "answer to read registers R0: expected 5 characters of data, got 4"),
-    (ReadRegisters(R0, 1), b"010a5", "expected capital hex digits"),
-    (ReadRegisters(R0, 1), b"0+0A5", "expected capital hex digits"),
-    (ReadRegisters(R0, 1), b"01_0A", "expected capital hex digits"),
-    (ReadRegisters(R0, 1), b"0 0A5", "expected capital hex digits"),
+    (ReadRegisters(R0, 1), b"0+0A5", "expected hex digits"),
+    (ReadRegisters(R0, 1), b"01_0A", "expected hex digits"),
+    (ReadRegisters(R0, 1), b"0 0A5", "expected hex digits"),
     (ReadRegisters(DR0, 1), b"010A5", "expected 9 characters of data, got 5"),
     (ReadMixed((R0, X0)), b"010A52", "expected 0 or 1"),
     (ReadMixed((R0, X0)), b"010A5", "expected 6 characters of data, got 5"),
@@ -152,7 +146,6 @@ WRONG_ANSWERS: list[tuple[Request[Any], bytes, str]] = [
     (ReadPage(5), b"0" + PAGE_HEX[:-2], "answer to read program page 5: expected 257 characters"),
     (ReadPage(5), b"00" + PAGE_HEX, "expected 257 characters of data, got 258"),
     (ReadPage(5), b"4" + PAGE_HEX, "expected the error character 0"),
-    (ReadPage(5), b"0" + PAGE_HEX.lower(), "expected capital hex digits"),
     (ReadDetailedStatus(), 127 * b"0", "expected 129 characters of data, got 127"),
     (ReadDetailedStatus(), 130 * b"0", "expected 129 characters of data, got 130"),
     (ReadDetailedStatus(), b"F" + 128 * b"0", "expected the error character 0"),
@@ -242,12 +235,38 @@ def test_an_unknown_code_is_shown_as_a_code() -> None:
     assert refused.hint is None
 
 
-@pytest.mark.parametrize("data", [b"a", b"f", b"G", b"+", b" ", b"\x00", b"\xff", b"04", b"4 "])
-def test_an_error_character_is_one_capital_hex_digit(data: bytes) -> None:
+@pytest.mark.parametrize("data", [b"g", b"G", b"+", b" ", b"\x00", b"\xff", b"04", b"4 "])
+def test_an_error_character_is_one_hex_digit(data: bytes) -> None:
     for request in requests_that_can_be_refused():
         if request.command != Command.LOOPBACK:
             with pytest.raises(FrameError):
                 DATA.parse_answer(request, data)
+
+
+SMALL: list[tuple[Request[Any], bytes, object]] = [
+    (ReadBriefStatus(), b"02900a0", BriefStatus.parse(bytes.fromhex("2900A0"))),
+    (ReadRegisters(R0, 1), b"010a5", (0x10A5,)),
+    (ReadRegisters(DR0, 1), b"0ffFFfffe", (0xFFFFFFFE,)),
+    (ReadMixed((R0, X0)), b"0ab0f1", (0xAB0F, 1)),
+    (ReadPage(5), b"0" + PAGE_HEX.lower(), PAGE),
+    (ReadPage(5), PAGE_HEX.lower(), PAGE),
+]
+
+
+@each(("request_", "data", "answer"), SMALL)
+def test_small_hex_digits_of_an_answer_are_read(request_: Request[Any], data: bytes, answer: object) -> None:
+    assert DATA.parse_answer(request_, data) == answer
+
+
+def test_a_small_error_character_is_read() -> None:
+    with pytest.raises(PlcRefused, match="error A, illegal address"):
+        DATA.parse_answer(ReadRegisters(R0, 1), b"a")
+
+
+def test_small_hex_digits_of_a_request_are_read() -> None:
+    assert DATA.parse_request(0x47, b"01R0000010a5") == WriteRegisters(R0, (0x10A5,))
+    assert DATA.parse_request(0x44, b"0aX0000") == ReadDiscretes(X0, 10)
+    assert DATA.parse_request(0x4F, b"00c0") == ReadPage(0xC0)
 
 
 def test_loopback_has_no_error_character() -> None:

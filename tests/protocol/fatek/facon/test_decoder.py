@@ -10,6 +10,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from fatektool.errors import FrameError
+from fatektool.protocol.codec import Frame
 from fatektool.protocol.fatek.facon import codec
 from fatektool.protocol.fatek.facon.codec import FACON, frame_bytes, lrc, parse_frame
 from tests.protocol.decoding import decoded, framed, frames
@@ -145,16 +146,26 @@ def test_a_frame_without_end_is_dropped_at_508_bytes() -> None:
 
 @pytest.mark.parametrize(
     "station_and_command",
-    [b"0a40", b"014e", b"+140", b"01+4", b" 140", b"1_40", b"01 4", b"014 ", b"G140", b"01-1", b"\xb1\xb240"],
+    [b"0g40", b"+140", b"01+4", b" 140", b"1_40", b"01 4", b"014 ", b"G140", b"01-1", b"\xb1\xb240"],
 )
-def test_only_capital_hex_digits_name_station_and_command(station_and_command: bytes) -> None:
+def test_only_hex_digits_name_station_and_command(station_and_command: bytes) -> None:
     (error,) = decoded(framed(station_and_command))
     assert isinstance(error, FrameError)
-    assert "not two capital hex digits" in error.message
+    assert "not two hex digits" in error.message
     assert not error.checksum
 
 
-@pytest.mark.parametrize("got", [b"c7", b"+7", b" 7", b"7 ", b"C8", b"\xff\xff", b"0\x00"])
+def test_small_hex_digits_are_read() -> None:
+    """As some devices in the field send them."""
+    (frame,) = decoded(b"\x020a4eA6d\x03")
+    assert isinstance(frame, Frame)
+    assert (frame.station, frame.command, frame.data) == (0x0A, 0x4E, b"A")
+    (status,) = decoded(b"\x020140c7\x03")
+    assert isinstance(status, Frame)
+    assert (status.station, status.command, status.data) == (0x01, 0x40, b"")
+
+
+@pytest.mark.parametrize("got", [b"+7", b" 7", b"7 ", b"C8", b"\xff\xff", b"0\x00"])
 def test_only_the_exact_checksum_passes(got: bytes) -> None:
     (error,) = decoded(b"\x020140" + got + b"\x03")
     assert isinstance(error, FrameError)
