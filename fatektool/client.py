@@ -7,10 +7,9 @@ All values are plain: discretes are bool, registers unsigned int, pages 128 byte
 from __future__ import annotations
 
 import time
-from itertools import accumulate
 from typing import TYPE_CHECKING
 
-from fatektool.errors import DataError, LineError, PlcBusy, PlcError, PlcRefused
+from fatektool.errors import DataError, LineError, PlcBusy, PlcRefused
 from fatektool.protocol.commands import (
     DETAILED_BYTES,
     Control,
@@ -23,7 +22,6 @@ from fatektool.protocol.commands import (
     ReadMixed,
     ReadPage,
     ReadRegisters,
-    RunStop,
     WriteDiscretes,
     WriteMixed,
     WritePage,
@@ -35,14 +33,12 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Sequence
     from contextlib import ExitStack
     from types import TracebackType
-    from typing import Any, Self
+    from typing import Self
 
     from fatektool.exchange.link import Link
     from fatektool.protocol.commands import Request
     from fatektool.protocol.status import BriefStatus, DetailedStatus
     from fatektool.transport.lent import LentTransport
-
-_MODE_TRIES = 20
 
 
 class Plc:
@@ -183,7 +179,9 @@ class Plc:
         Raises:
             PlcError: acknowledged, but the PLC is not in RUN.
         """
-        self._set_mode(run=True)
+        from fatektool.exchange.mode import set_mode
+
+        set_mode(self.link, run=True)
 
     def stop(self) -> None:
         """Stop the program (command 41), then read the mode back.
@@ -191,29 +189,9 @@ class Plc:
         Raises:
             PlcError: acknowledged, but the PLC is not in STOP.
         """
-        self._set_mode(run=False)
+        from fatektool.exchange.mode import set_mode
 
-    def _set_mode(self, *, run: bool) -> None:
-        self.link.ask(RunStop(run))
-        clock = self.link.transport.clock
-        deadline = clock() + self.link.timeout_s
-        word, other = ("RUN", "STOP") if run else ("STOP", "RUN")
-        for _ in range(_MODE_TRIES):  # a PLC may need a scan or two
-            try:
-                flags = self.brief_status().flags
-            except PlcRefused as error:
-                raise PlcError(
-                    f"the PLC acknowledged {word}, but its mode cannot be read back: {error.message}",
-                    hint="look at the RUN lamp of the PLC",
-                ) from error
-            if flags.running == run:
-                return
-            if clock() > deadline:
-                break
-        raise PlcError(
-            f"the PLC acknowledged {word}, but its status is still {other}",
-            hint="see 'fatektool status': an emergency stop or the switch of the PLC may prevent it",
-        )
+        set_mode(self.link, run=False)
 
     # --- discretes --------------------------------------------------------------------------------
 
@@ -298,21 +276,10 @@ class Plc:
             separated: places in ``pages`` before which a brief status (40) is read, so that the answer to the
                 page before cannot be taken for theirs.
         """
-        from fatektool.exchange.batch import read_all  # who reads no program does not load it
+        from fatektool.exchange.batch import read_separated  # who reads no program does not load it
 
-        if not separated:
-            return read_all(self.link, [ReadPage(page) for page in pages], on_page)
-        requests: list[Request[Any]] = []
-        for place, page in enumerate(pages):
-            if place in separated:
-                requests.append(ReadBriefStatus())
-            requests.append(ReadPage(page))
-        counted = [*accumulate(isinstance(request, ReadPage) for request in requests)]
-        told = None if on_page is None else lambda done: on_page(counted[done - 1])
-        answers = read_all(self.link, requests, told)
-        return [
-            answer for request, answer in zip(requests, answers, strict=True) if isinstance(request, ReadPage)
-        ]
+        requests = [ReadPage(page) for page in pages]
+        return read_separated(self.link, requests, ReadBriefStatus(), separated, on_page)
 
     def read_pages_until_refused(
         self, pages: Sequence[int], on_page: Callable[[int], None] | None = None

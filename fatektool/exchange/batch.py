@@ -17,13 +17,14 @@ reads finds that.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Generic, TypeVar
+from bisect import bisect_left
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from fatektool.errors import PlcRefused
 from fatektool.exchange.stream import ask_in_stream, no_more
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Collection, Sequence
 
     from fatektool.exchange.link import Link
     from fatektool.protocol.commands import Request
@@ -50,6 +51,44 @@ def read_all(
     if refusal is not None:
         raise refusal
     return answers
+
+
+def read_separated(
+    link: Link,
+    requests: Sequence[Request[A]],
+    separator: Request[Any],
+    places: Collection[int],
+    on_answer: Callable[[int], None] | None = None,
+) -> list[A]:
+    """Send reads as ``read_all`` does, and another read before some of them.
+
+    Args:
+        link: the link.
+        requests: reads.
+        separator: the other read, so that an answer before it cannot be taken for one after it.
+        places: places in ``requests`` before which it is sent.
+        on_answer: gets the number of answers to ``requests`` so far.
+
+    Raises:
+        NoAnswer: no valid answer to one of them.
+        PlcRefused: one of them was refused.
+    """
+    if not places:
+        return read_all(link, requests, on_answer)
+    sent: list[Request[Any]] = []
+    kept: list[int] = []
+    for place, request in enumerate(requests):
+        if place in places:
+            sent.append(separator)
+        kept.append(len(sent))
+        sent.append(request)
+
+    def count(done: int) -> None:
+        if on_answer is not None:
+            on_answer(bisect_left(kept, done))
+
+    answers = read_all(link, sent, count)
+    return [answers[place] for place in kept]
 
 
 def read_until_refused(

@@ -14,6 +14,11 @@ if TYPE_CHECKING:
 _PROCESSES: Final = 2  # TH32CS_SNAPPROCESS
 _INVALID: Final = ctypes.c_void_p(-1).value
 
+if sys.platform == "win32":
+    _KERNEL: Any = ctypes.windll.kernel32
+else:  # so that the rest can be loaded and checked on any system; nobody calls it there
+    _KERNEL: Any = None
+
 
 class _Entry(ctypes.Structure):
     """PROCESSENTRY32W of tlhelp32.h."""
@@ -54,17 +59,16 @@ def chain(process: int, processes: dict[int, tuple[int, str]]) -> Iterator[str]:
 
 
 def _processes() -> Iterator[tuple[int, int, str]]:
-    kernel = _kernel()
-    kernel.CreateToolhelp32Snapshot.restype = ctypes.c_void_p
-    snapshot = kernel.CreateToolhelp32Snapshot(_PROCESSES, 0)
+    _KERNEL.CreateToolhelp32Snapshot.restype = ctypes.c_void_p
+    snapshot = _KERNEL.CreateToolhelp32Snapshot(_PROCESSES, 0)
     if snapshot in {None, _INVALID}:
         return
     entry = _Entry(dwSize=ctypes.sizeof(_Entry))
-    more = kernel.Process32FirstW(ctypes.c_void_p(snapshot), ctypes.byref(entry))
+    more = _KERNEL.Process32FirstW(ctypes.c_void_p(snapshot), ctypes.byref(entry))
     while more:
         yield entry.th32ProcessID, entry.th32ParentProcessID, entry.szExeFile
-        more = kernel.Process32NextW(ctypes.c_void_p(snapshot), ctypes.byref(entry))
-    kernel.CloseHandle(ctypes.c_void_p(snapshot))
+        more = _KERNEL.Process32NextW(ctypes.c_void_p(snapshot), ctypes.byref(entry))
+    _KERNEL.CloseHandle(ctypes.c_void_p(snapshot))
 
 
 class Job:
@@ -84,28 +88,21 @@ class Job:
         Args:
             process: the handle of the process.
         """
-        kernel = _kernel()
-        kernel.CreateJobObjectW.restype = ctypes.c_void_p
-        number = kernel.CreateJobObjectW(None, None)
+        _KERNEL.CreateJobObjectW.restype = ctypes.c_void_p
+        number = _KERNEL.CreateJobObjectW(None, None)
         if not number:
             return None
         made = cls(ctypes.c_void_p(number))
-        if not kernel.AssignProcessToJobObject(made._handle, ctypes.c_void_p(process)):
+        if not _KERNEL.AssignProcessToJobObject(made._handle, ctypes.c_void_p(process)):
             made.close()
             return None
         return made
 
     def end(self) -> None:
         """End all processes of the group."""
-        _kernel().TerminateJobObject(self._handle, 1)
+        _KERNEL.TerminateJobObject(self._handle, 1)
 
     def close(self) -> None:
         """Forget the group; its processes go on."""
         with contextlib.suppress(OSError):
-            _kernel().CloseHandle(self._handle)
-
-
-def _kernel() -> Any:
-    if sys.platform != "win32":
-        raise NotImplementedError
-    return ctypes.windll.kernel32
+            _KERNEL.CloseHandle(self._handle)

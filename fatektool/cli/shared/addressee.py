@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any
 
 from fatektool.cli.shared.colour import word
 from fatektool.cli.shared.output import passed, shown_time, table
+from fatektool.cli.shared.questions import confirm, require_answer
 from fatektool.cli.shared.unfinished import line_name
 from fatektool.counts import spent
 from fatektool.errors import LineError, UsageError
@@ -189,11 +190,11 @@ def agree(
         UsageError: the user does not agree, or there is no terminal to ask on.
         KeyboardInterrupt: Ctrl-C at the question; has ``unchanged``.
     """
-    voice.require_answer(yes=yes)
+    require_answer(yes=yes)
     for line in (*table(rows), *lines):
         voice.say(line)
     try:
-        agreed = voice.confirm(question, yes=yes)
+        agreed = confirm(question, yes=yes)
     except KeyboardInterrupt:
         raise KeyboardInterrupt(unchanged) from None
     if not agreed:

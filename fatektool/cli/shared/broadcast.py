@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from fatektool.cli.shared.documents import broadcast_document
+from fatektool.cli.shared.questions import confirm
 from fatektool.counts import counted
 from fatektool.errors import UsageError
 
@@ -62,7 +63,7 @@ def send_to_all(
     any_station = connection.address.changed(station=1)  # a line is opened with one; which does not matter
     with connection._replace(address=any_station).open(voice, writes=True) as plc:
         question = f"Send '{command}' to every PLC on {connection.address.target}?"
-        if not voice.confirm(question, yes=yes):
+        if not confirm(question, yes=yes):
             raise UsageError("Aborted. Nothing was sent.")
         for request in requests:
             plc.broadcast(request)

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import contextlib
 import sys
 import time
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, TextIO
 
 import click
-
-from fatektool.errors import UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sized
@@ -21,8 +18,6 @@ if TYPE_CHECKING:
     from fatektool.client import Plc
     from fatektool.jobs.progress import Progress
 
-
-_LOOK_S: Final = 0.2
 
 _FEW: Final = 200
 """So many elements take no more than a second or two."""
@@ -136,20 +131,6 @@ _MOST_HELD: Final = 100
 _READ_S: Final = 3.0
 
 
-def _wait_for_line() -> None:
-    """Wait for an answer at the terminal, and let Ctrl-C end that.
-
-    A signal that comes just before a read does not interrupt it: so the read begins when there is a line.
-    """
-    if sys.platform == "win32":
-        return
-    from select import select
-
-    with contextlib.suppress(OSError, ValueError):  # it is no file of the system
-        while not select([sys.stdin], [], [], _LOOK_S)[0]:
-            pass
-
-
 def print_stderr(text: str) -> None:
     """Print a line on stderr."""
     if _HELD and sys.stderr.isatty():
@@ -206,42 +187,6 @@ class Voice(NamedTuple):
             for line in lines:
                 print_line(line)
 
-    def confirm(self, question: str, *, yes: bool, option: str = "--yes") -> bool:
-        """Ask, unless the option answers; a question that cannot be put is a refusal.
-
-        Raises:
-            UsageError: there is no terminal to ask on.
-        """
-        self.require_answer(yes=yes, option=option)
-        if yes:
-            return True
-        while True:
-            click.echo(f"{visible(question)} [y/N]: ", nl=False, err=True)
-            _wait_for_line()
-            answer = sys.stdin.readline()
-            if not answer:  # ^D, or the terminal is gone
-                print_stderr("")
-            word = answer.strip().lower()
-            if word in {"y", "yes"}:
-                return True
-            if word in {"", "n", "no"}:
-                return False
-            print_stderr("please answer y or n")
-
-    def require_answer(
-        self, *, yes: bool, option: str = "--yes", unchanged: str = "nothing was done"
-    ) -> None:
-        """Refuse to go on without an answer: neither the option nor anybody to ask.
-
-        Raises:
-            UsageError: there is no terminal to ask on.
-        """
-        if not yes and not can_ask():
-            raise UsageError(
-                f"this needs a confirmation, and there is no terminal to ask on: {unchanged}",
-                hint=f"add {option}",
-            )
-
     def progress(self, unit: str = "pages") -> ProgressBar:
         """A progress bar for a ``with`` statement; nothing where it would be noise."""
         return ProgressBar(unit, shown=shows_progress(self))
@@ -255,11 +200,6 @@ def elements_bar(voice: Voice, items: Sized, *, whole: bool = False) -> Progress
 def shows_progress(voice: Voice) -> bool:
     """True on a terminal, unless ``-q`` is given."""
     return not voice.quiet and sys.stderr.isatty()
-
-
-def can_ask() -> bool:
-    """True if a user can answer a question."""
-    return sys.stdin.isatty() and sys.stderr.isatty()
 
 
 def table(rows: Iterable[tuple[str, object]]) -> Iterator[str]:

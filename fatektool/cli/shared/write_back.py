@@ -18,6 +18,7 @@ from fatektool.cli.shared.again import command_again
 from fatektool.cli.shared.incomplete import incomplete_lines
 from fatektool.cli.shared.output import Voice, table
 from fatektool.cli.shared.places import safety_folder
+from fatektool.cli.shared.questions import require_answer
 from fatektool.cli.shared.unfinished import (
     RecordMark,
     forget,
@@ -93,7 +94,7 @@ class WriteCommand:
             UsageError: there is no terminal to ask on.
         """
         if changes and not self.terms.dry_run:
-            self.voice.require_answer(yes=self.terms.yes, unchanged="nothing was written")
+            require_answer(yes=self.terms.yes, unchanged="nothing was written")
 
     def mark(self, command: str) -> RecordMark:
         """Keeps the record while this is written.

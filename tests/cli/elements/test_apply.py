@@ -204,7 +204,7 @@ def test_it_asks(plant: Plant, place: Path, monkeypatch: pytest.MonkeyPatch) -> 
     alone = plant.cli("snapshot", "apply", "a.json")
     assert (alone.code, "--yes" in alone.err.splitlines()[-1]) == (2, True)
     assert not safety(place)
-    monkeypatch.setattr("fatektool.cli.shared.output.can_ask", lambda: True)
+    monkeypatch.setattr("fatektool.cli.shared.questions.can_ask", lambda: True)
     monkeypatch.setattr("sys.stdin.readline", lambda: "n\n", raising=False)
     done = plant.cli("snapshot", "apply", "a.json")
     assert done.code == 2

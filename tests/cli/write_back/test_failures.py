@@ -365,9 +365,9 @@ def test_the_record_is_of_this_write_alone(bench: Bench) -> None:
     assert bench.records == []
 
 
+@pytest.mark.parametrize("bench", [name for name in WRITERS if name != "restore"], indirect=True)
 def test_a_snapshot_that_is_written_back_clears_the_record(bench: Bench) -> None:
-    if bench.name == "restore":
-        pytest.skip("a program that is verified clears it: see test_unfinished")
+    """A program that is verified clears that of a restore: see ``test_unfinished``."""
     with pytest.MonkeyPatch.context() as patch:
         bench.cut(patch, 1)
         assert bench.run("--yes", *QUICK).code == 6

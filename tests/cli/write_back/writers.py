@@ -142,7 +142,7 @@ class Bench:
 
     def answer(self, answer: Callable[[], str]) -> None:
         """Let somebody answer the question."""
-        self.patch.setattr("fatektool.cli.shared.output.can_ask", lambda: True)
+        self.patch.setattr("fatektool.cli.shared.questions.can_ask", lambda: True)
         self.patch.setattr("sys.stdin.readline", answer, raising=False)
 
     def each_request(
