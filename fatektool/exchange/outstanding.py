@@ -122,7 +122,7 @@ class Outstanding:
         """How long the PLC took for an answer that was just received, in seconds.
 
         A PLC answers one request after the other, so the time counts from its previous answer. If that is
-        less than the time given for the answer, something else took the time, and all of it counts.
+        no more than the time given for the answer, something else took the time, and all of it counts.
         """
         now = self._state.transport.clock()
         took_s = now - max(request.since, self._answered_at)

@@ -173,7 +173,9 @@ DAMAGE = [
     (put("pages", value={}), "pages: expected an array"),
     (cut(6), "pages: expected 8 for 400 words, got 6"),
     (put("page_count", value=9), "page_count: expected 8 from the pages"),
-    (put("page_count", value=True), "page_count: expected a whole number"),
+    (put("page_count", value=True), "page_count: expected 8 from the pages, got True"),
+    (put("page_count", value=8.0), "page_count: expected 8 from the pages, got 8.0"),
+    (drop("page_count"), "page_count: expected 8 from the pages, got None"),
     (put("pages", value=[]), "pages: expected 8 for 400 words, got 0"),
     (put("pages", 3, value="AB"), "page 3: expected 256 hex digits, got 'AB'"),
     (put("pages", 3, value="A" * 257), "page 3: expected 256 hex digits, .*257 characters"),
@@ -197,6 +199,7 @@ DAMAGE = [
     (put("ladder_words", value="400"), "ladder_words: expected a whole number"),
     (put("ladder_words", value=401), "header.valid .page 0.|header.ladder_words"),
     (put("passes", value=0), "passes: expected a whole number"),
+    (put("passes", value=1001), "passes: expected a whole number of 1 to 1000, got 1001"),
     (put("passes", value=True), "passes: expected a whole number"),
     (put("created", value="2026-11-22 03:15:00"), "created: expected a UTC time"),
     (put("created", value="2026-11-22T03:15:00+01:00"), "created: expected a UTC time"),
@@ -235,6 +238,13 @@ def test_damage_is_refused_and_named(damage: Callable[[dict[str, Any]], None], m
     assert caught.value.hint
     assert len(str(caught.value)) < 500
     assert caught.value.details["file"] == "press.json"
+
+
+@pytest.mark.parametrize("passes", [1, 1000])
+def test_as_many_passes_as_there_may_be(passes: int) -> None:
+    top = document(program(1))
+    top["passes"] = passes
+    assert Backup.parse(file_of(top)).passes == passes
 
 
 def test_a_damaged_page_is_a_value_for_scripts_too() -> None:

@@ -77,7 +77,7 @@ class Jobs:
 def test_a_job_of_windows(made: int, *, assigned: bool, expected: list[str]) -> None:
     jobs = Jobs(made, assigned=assigned)
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(windows_processes, "_kernel", lambda: jobs)
+        patched.setattr(windows_processes, "_KERNEL", jobs)
         job = windows_processes.Job.of(1)
         assert (job is not None) is assigned
         if job is not None:

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from fatektool.cli.shared import output, streams
+from fatektool.cli.shared import streams
+from fatektool.cli.shared.questions import can_ask, confirm
 from fatektool.errors import UsageError
 from fatektool.system import terminal
 from tests.platforms import posix
@@ -56,16 +57,16 @@ def devices(**consoles: bool) -> Iterator[None]:
 
 def test_consoles_are_terminals() -> None:
     with devices(stdin=True, stdout=True, stderr=True):
-        assert output.can_ask()
+        assert can_ask()
         assert sys.stdout.isatty()
 
 
 def test_nobody_answers_from_nul() -> None:
     for consoles in ({"stdin": False, "stderr": True}, {"stdin": True, "stderr": False}):
         with devices(stdout=True, **consoles):
-            assert not output.can_ask()
+            assert not can_ask()
             with pytest.raises(UsageError, match="there is no terminal to ask on"):
-                output.Voice().confirm("restore?", yes=False)
+                confirm("restore?", yes=False)
 
 
 def test_what_goes_to_nul_is_no_screen() -> None:
