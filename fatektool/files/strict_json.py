@@ -7,6 +7,7 @@ readers understand in two ways is refused.
 from __future__ import annotations
 
 import json
+import reprlib
 from typing import Any
 
 from fatektool.files.plain_text import plain_text
@@ -18,6 +19,8 @@ def read_json(data: bytes) -> Any:
     Raises:
         ValueError: it is not JSON, is too deep, or has two meanings.
     """
+    if not data.strip(b"\0\t\n\r "):
+        raise ValueError("only NUL bytes, as after a power cut" if b"\0" in data else "the file is empty")
     try:
         return json.loads(plain_text(data), object_pairs_hook=_once_each, parse_constant=_no_number)
     except RecursionError as error:
@@ -25,9 +28,11 @@ def read_json(data: bytes) -> Any:
 
 
 def _once_each(items: list[tuple[str, Any]]) -> dict[str, Any]:
-    found = dict(items)
-    if len(found) != len(items):
-        raise ValueError("a key occurs twice")
+    found: dict[str, Any] = {}
+    for key, value in items:
+        if key in found:
+            raise ValueError(f"the key {reprlib.repr(key)} occurs twice")
+        found[key] = value
     return found
 
 

@@ -2,12 +2,26 @@
 
 from __future__ import annotations
 
+import re
 import time
+from typing import Final
+
+_UTC: Final = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?(Z|[+-]00:00)", re.ASCII)
 
 
 def utc(seconds: float | None = None) -> str:
     """RFC 3339 to the second, ``2026-11-22T03:15:00Z``; the present by default."""
     return time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(seconds))
+
+
+def is_utc(text: str) -> bool:
+    """True for a time in UTC as RFC 3339 has it, also with a fraction, or ``+00:00`` for ``Z``."""
+    from datetime import datetime  # which few commands need
+
+    try:
+        return bool(_UTC.fullmatch(text) and datetime.fromisoformat(text))
+    except ValueError:  # month 13
+        return False
 
 
 def stamp(created: str) -> str:

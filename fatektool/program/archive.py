@@ -11,7 +11,8 @@ Keys in this order::
 ``data`` is there if the PLC's data were saved too: see ``fatektool.program.data.part``. A version from before
 there were data ignores it, and takes the program alone.
 
-Older files have no ``proof``, or only ``valid``, ``signature`` and ``ladder_words`` in ``header``.
+Keys that are not known are ignored: another program, or a later version, may write more. Older files have no
+``proof``, or only ``valid``, ``signature`` and ``ladder_words`` in ``header``.
 ``sha256`` is of all pages' bytes in order. A backup file is always checked completely: an invalid file is
 refused, with what is wrong and where, before anything is done with it.
 """
@@ -27,11 +28,12 @@ from typing import TYPE_CHECKING, Any, Final
 from fatektool.errors import DataError
 from fatektool.files.atomic import read_bounded, write_whole
 from fatektool.files.strict_json import read_json
+from fatektool.files.times import is_utc
 from fatektool.program.checked_document import CheckedDocument, short
 from fatektool.program.headers.families import short_document
 from fatektool.program.headers.header import PAGE_BYTES
 from fatektool.program.image import Program, is_whole, page_count
-from fatektool.program.plc_record import fault_of
+from fatektool.program.plc_record import fault_of, known_keys
 
 if TYPE_CHECKING:
     from fatektool.program.data.part import DataPart
@@ -41,7 +43,6 @@ LARGEST_FILE: Final = 4 << 20  # the largest image takes 270 kB
 _RIGHT_FILE: Final = "check that it is the right file"
 _PAGE: Final = re.compile(r"[0-9A-Fa-f]{256}", re.ASCII)
 _PROJECT: Final = b"Fatek WinProladder"
-_TIME: Final = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?Z", re.ASCII)
 
 
 @dataclass(frozen=True, slots=True)
@@ -208,9 +209,9 @@ def _json(data: bytes, name: str) -> dict[str, Any]:
             f"{name}: not a backup file: {error}", hint="check that it is the right file"
         ) from error
     if not isinstance(document, dict) or document.get("schema") != SCHEMA:
-        got = document.get("schema") if isinstance(document, dict) else type(document).__name__
+        got = short(document.get("schema") if isinstance(document, dict) else document)
         raise DataError(
-            f"{name}: not a backup file of this version: expected schema {SCHEMA!r}, got {short(got)}",
+            f"{name}: not a backup file of this version: expected schema {SCHEMA!r}, got {got}",
             hint=_RIGHT_FILE,
         )
     return document
@@ -237,14 +238,16 @@ class _Reader(CheckedDocument):
         )
         self.same("sha256", program.sha256, self.text(document, "sha256").lower())
         header = self.part(document, "header")
-        brief = short_document(program.pages[0], ladder_words)
-        for key, value in (brief if header.keys() == brief.keys() else found.header_document).items():
+        whole = "family" in header
+        computed = found.header_document if whole else short_document(program.pages[0], ladder_words)
+        for key, value in computed.items():
             self.same(f"header.{key} (page 0)", value, header.get(key))
-        if not _TIME.fullmatch(found.created):
+        if not is_utc(found.created):
             raise self.fault("created: expected a UTC time such as 2026-11-22T03:15:00Z", found.created)
         fault = fault_of(found.plc)
         if fault is not None:
             raise self.fault(*fault)
+        found = replace(found, plc=known_keys(found.plc))
         system = found.plc["system"]
         self.same("plc.system.ladder_words", ladder_words, system["ladder_words"])
         if "data" not in document:

@@ -74,10 +74,10 @@ def model_words(system: Mapping[str, Any]) -> str:
 
 
 def fault_of(value: object, shape: Any = SHAPE, where: str = "plc") -> tuple[str, object] | None:
-    """The first fault: where, what was expected, and the value; None if all is valid."""
+    """The first fault: where, what was expected, and the value; None if all is there and valid."""
     if isinstance(shape, _Value):
         return None if shape.holds(value) else (f"{where}: expected {shape.words}", value)
-    if not isinstance(value, dict) or value.keys() != shape.keys():
+    if not isinstance(value, dict) or not shape.keys() <= value.keys():
         got = sorted(value) if isinstance(value, dict) else value
         return f"{where}: expected an object of {', '.join(shape)}", got
     for key, part in shape.items():
@@ -85,3 +85,12 @@ def fault_of(value: object, shape: Any = SHAPE, where: str = "plc") -> tuple[str
         if fault is not None:
             return fault
     return None
+
+
+def known_keys(value: Any, shape: Any = SHAPE) -> Any:
+    """A valid record without the keys that are not known."""
+    return (
+        {key: known_keys(value[key], part) for key, part in shape.items()}
+        if isinstance(shape, dict)
+        else value
+    )

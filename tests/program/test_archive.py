@@ -203,6 +203,7 @@ DAMAGE = [
     (put("passes", value=True), "passes: expected a whole number"),
     (put("created", value="2026-11-22 03:15:00"), "created: expected a UTC time"),
     (put("created", value="2026-11-22T03:15:00+01:00"), "created: expected a UTC time"),
+    (put("created", value="2026-13-22T03:15:00Z"), "created: expected a UTC time"),
     (put("created", value="2026-11-22T03:15:00Z\n"), "created: expected a UTC time"),
     (put("created", value=DEEP), "created: expected a text"),
     (put("tool", value=None), "tool: expected a text"),
@@ -247,6 +248,46 @@ def test_as_many_passes_as_there_may_be(passes: int) -> None:
     assert Backup.parse(file_of(top)).passes == passes
 
 
+def add_everywhere(part: dict[str, Any]) -> None:
+    for value in [*part.values()]:
+        if isinstance(value, dict):
+            add_everywhere(value)
+    part["note"] = {"of": ["another", "program"]}
+
+
+def test_keys_that_are_not_known_are_ignored() -> None:
+    """Of another program, or of a later version."""
+    top = document(program(400))
+    add_everywhere(top)
+    assert Backup.parse(file_of(top)) == Backup.parse(file_of(document(program(400))))
+    top["header"] = {"valid": True, "signature": "FB30", "ladder_words": 400, "checked_by": "hand"}
+    assert Backup.parse(file_of(top)).program == program(400)
+
+
+@pytest.mark.parametrize(
+    "created", ["2026-11-22T03:15:00.25Z", "2026-11-22T03:15:00+00:00", "2024-02-29T23:59:59Z"]
+)
+def test_any_way_to_write_a_time_in_utc(created: str) -> None:
+    top = document(program(400))
+    top["created"] = created
+    assert Backup.parse(file_of(top)).created == created
+
+
+@pytest.mark.parametrize(
+    "rewrite",
+    [
+        lambda top: json.dumps(top, indent=4),
+        lambda top: json.dumps(top, indent=2, sort_keys=True) + "\n",
+        lambda top: json.dumps(top, separators=(",", ":")),
+        lambda top: json.dumps(top, indent=1).replace("\n", "\r\n"),
+        lambda top: "\ufeff" + json.dumps(dict(reversed(top.items())), indent="\t"),
+    ],
+    ids=["python -m json.tool", "jq -S .", "jq -c .", "CRLF", "mark, other order, tabs"],
+)
+def test_a_file_that_an_editor_wrote_again(rewrite: Callable[[dict[str, Any]], str]) -> None:
+    assert Backup.parse(rewrite(document(program(400))).encode()).program == program(400)
+
+
 def test_a_damaged_page_is_a_value_for_scripts_too() -> None:
     top = document()
     top["pages"][6] = "nonsense"
@@ -261,15 +302,17 @@ WHOLE = backup(program(1)).to_bytes()
 @pytest.mark.parametrize(
     ("data", "message"),
     [
-        (b"", "Expecting value"),
-        (b"[]", "got 'list'"),
-        (b"null", "got 'NoneType'"),
+        (b"", "the file is empty"),
+        (b" \r\n", "the file is empty"),
+        (b"\0" * 5000, "only NUL bytes, as after a power cut"),
+        (b"[]", r"got \[\]"),
+        (b"null", "got None"),
         (b"{}", "got None"),
         (b"\xff\xfe\x00", "text in UTF-16, expected UTF-8"),
         (WHOLE.decode().encode("utf-16"), "text in UTF-16, expected UTF-8"),
         (b"\xef\xbb\xbf\xff" + WHOLE, "byte 3 is FF"),
         (WHOLE + WHOLE, "Extra data"),
-        (WHOLE.replace(b'"passes": 2', b'"passes": 2, "passes": 2'), "a key occurs twice"),
+        (WHOLE.replace(b'"passes": 2', b'"passes": 2, "passes": 2'), "the key 'passes' occurs twice"),
         (WHOLE.replace(b'"passes": 2', b'"passes": NaN'), "NaN is not JSON"),
         (WHOLE.replace(b'"passes": 2', b'"passes": -Infinity'), "-Infinity is not JSON"),
         (WHOLE.replace(b'"passes": 2', b'"passes": 1e999'), "passes: expected a whole number"),
@@ -277,7 +320,7 @@ WHOLE = backup(program(1)).to_bytes()
         (b"[" * 100_000, "too deep"),
         (b'{"schema":' * 100_000, "too deep"),
     ],
-    ids=range(15),
+    ids=range(17),
 )
 def test_what_is_no_backup_at_all(data: bytes, message: str) -> None:
     with pytest.raises(DataError, match=message):

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.errors import UsageError
+from fatektool.files.times import is_utc
 from fatektool.program.data.part import NO_REGISTER, NO_RELAY, RELAYS, DataPart, Values, row_length
 from fatektool.program.data.uses import SYMBOLS
 from fatektool.protocol.elements import Element
@@ -28,7 +29,6 @@ _MOST: Final = 65536
 _DISCRETES: Final = "XYMSTC"
 _REGISTER: Final = re.compile(r"[0-9A-F]{4}|----")
 _RELAY: Final = re.compile(r"[01-]")
-_TIME: Final = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?Z", re.ASCII)
 
 
 def read_part(fields: CheckedDocument, document: dict[str, Any], system: Mapping[str, Any]) -> DataPart:
@@ -43,7 +43,7 @@ def read_part(fields: CheckedDocument, document: dict[str, Any], system: Mapping
         DataError: something does not hold; says where.
     """
     time = fields.text(document, "time", "data.")
-    if not _TIME.fullmatch(time):
+    if not is_utc(time):
         raise fields.fault("data.time: expected a UTC time such as 2026-11-22T03:15:00Z", time)
     running = document.get("running")
     if not isinstance(running, bool):
