@@ -1,7 +1,8 @@
 """Build a Debian package, ``fatektool_VERSION_all.deb``: python3 packaging/deb.py [FOLDER].
 
 All that fatektool needs is in it, so that a gateway without internet can take it: ``dpkg -i`` asks for Python
-alone. Manual pages and the completions of bash, zsh and fish are in their places.
+alone. Manual pages and the completions of bash, zsh and fish are in their places, the documentation in
+``/usr/share/doc/fatektool``.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from email.utils import formatdate
 from pathlib import Path
 
 from bundle import ROOT, make_bundle, version
@@ -26,7 +28,7 @@ CONTROL = """\
 Package: fatektool
 Version: {version}
 Architecture: all
-Maintainer: fatektool
+Maintainer: fatektool <fatektool@localhost.localdomain>
 Installed-Size: {size}
 Depends: python3 (>= 3.11)
 Section: utils
@@ -35,6 +37,13 @@ Description: back up, verify and restore programs of FATEK and FACON PLCs
  A command for the programs, registers and lines of FATEK/FACON PLCs: FB, FBE,
  FBN, FBs and M-series. It backs up, verifies and restores ladder programs,
  reads and writes elements, and diagnoses lines.
+"""
+CHANGES = """\
+fatektool ({version}) unstable; urgency=medium
+
+  * See CHANGELOG.md.gz.
+
+ -- fatektool <fatektool@localhost.localdomain>  {date}
 """
 COMMAND = """\
 #!/usr/bin/python3 -sP
@@ -62,11 +71,15 @@ def main(folder: str = "dist") -> None:
         pages = root / "usr/share/man/man1"
         _python(root, ROOT / "packaging" / "man.py", pages)
         for page in pages.iterdir():
-            page.with_suffix(".1.gz").write_bytes(gzip.compress(page.read_bytes(), mtime=0))
+            _packed(page.with_suffix(".1.gz"), page.read_bytes())
             page.unlink()
         documents = root / "usr/share/doc/fatektool"
         documents.mkdir(parents=True)
         shutil.copy(ROOT / "LICENSE", documents / "copyright")
+        shutil.copy(ROOT / "README.md", documents)
+        shutil.copytree(ROOT / "docs", documents / "docs")
+        _packed(documents / "CHANGELOG.md.gz", (ROOT / "CHANGELOG.md").read_bytes())
+        _packed(documents / "changelog.gz", CHANGES.format(version=version(), date=formatdate()).encode())
         shutil.copytree(
             ROOT / "examples", documents / "examples", ignore=shutil.ignore_patterns("__pycache__")
         )
@@ -87,6 +100,10 @@ def _add(root: Path, place: str, text: str, mode: int = 0o644) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text, encoding="utf-8")
     path.chmod(mode)
+
+
+def _packed(path: Path, data: bytes) -> None:
+    path.write_bytes(gzip.compress(data, mtime=0))
 
 
 def _python(root: Path, *words: str | Path) -> str:

@@ -1,18 +1,34 @@
-r"""Man pages from the help: python3 packaging/man.py FOLDER writes ``fatektool-restore.1`` and others.
+r"""Man pages from the help: python3 packaging/man.py [FOLDER] writes ``fatektool-restore.1`` and others.
 
-A page has what ``--help`` shows, in the sections of a manual. Source of the format: groff_man(7).
+A page has what ``--help`` shows, in the sections of a manual. Source of the format: groff_man(7). A Python
+without fatektool makes a folder with it first.
 """
 
 from __future__ import annotations
 
+import os
 import re
+import subprocess
 import sys
+import tempfile
+from importlib.util import find_spec
+from inspect import cleandoc
+from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+if __name__ == "__main__" and (find_spec("click") is None or find_spec("fatektool") is None):
+    from bundle import make_bundle
+
+    with tempfile.TemporaryDirectory() as work:
+        make_bundle(Path(work) / "bundle")
+        environment = os.environ | {"PYTHONPATH": str(Path(work) / "bundle")}
+        sys.exit(subprocess.run([sys.executable, *sys.argv], env=environment, check=False).returncode)
 
 import click
 
 from fatektool.cli.app import app
+from fatektool.cli.shared.options import section_of
 from fatektool.errors import DataError, LineError, PlcError, RestoreIncomplete, UsageError
 from fatektool.version import __version__
 
@@ -49,26 +65,26 @@ def page(context: click.Context) -> str:
     """One page in roff."""
     command = context.command
     name = context.command_path.replace(" ", "-")
-    text = (command.help or command.short_help or "").replace("\b\n", "").strip()
     summary = command.get_short_help_str(300).rstrip(".")
     lines = [
         f'.TH "{name.upper()}" 1 "" "fatektool {__version__}" "User Commands"',
+        ".nh",  # a hyphen at the end of a line would be taken for one of an option
+        ".ad l",
         ".SH NAME",
         f"{escaped(name)} \\- {escaped(summary)}",
         ".SH SYNOPSIS",
         f".B {escaped(context.command_path)}",
         escaped(" ".join(command.collect_usage_pieces(context))),
         ".SH DESCRIPTION",
-        *paragraphs(text),
+        *paragraphs(command.help or command.short_help or ""),
+        *options(context),
     ]
-    records = [found for each in command.get_params(context) if (found := each.get_help_record(context))]
-    if records:
-        lines += [".SH OPTIONS", *terms(records)]
     if isinstance(command, click.Group):
         inner = [(each.info_name or "", each.command.get_short_help_str(300)) for each in children(context)]
         lines += [".SH COMMANDS", *terms(inner)]
+    examples = re.split(r";  +", re.sub("^Examples?: ", "", command.epilog or ""))
     if command.epilog:
-        lines += [".SH EXAMPLE", *paragraphs(command.epilog.removeprefix("Example: "))]
+        lines += [".SH EXAMPLES" if len(examples) > 1 else ".SH EXAMPLE", *as_they_are(examples)]
     lines += [".SH EXIT STATUS", *terms((str(code), meaning) for code, meaning in EXIT_CODES)]
     related = [context.parent] if context.parent else []
     related += children(context)
@@ -78,6 +94,19 @@ def page(context: click.Context) -> str:
     return "\n".join(lines) + "\n"
 
 
+def options(context: click.Context) -> Iterator[str]:
+    """The options in the sections of the help, those of the command first."""
+    records = [
+        (section_of(each), found)
+        for each in context.command.get_params(context)
+        if (found := each.get_help_record(context)) and not isinstance(each, click.Argument)
+    ]
+    records.sort(key=lambda record: record[0] != "Options")
+    for section, of_section in groupby(records, key=lambda record: record[0]):
+        yield ".SH OPTIONS" if section == "Options" else f".SH {section.upper()} OPTIONS"
+        yield from terms(record for _, record in of_section)
+
+
 def children(context: click.Context) -> list[click.Context]:
     """The commands of a group."""
     return [each for each in commands(context.command, (context.info_name or "",), context.parent)
@@ -85,11 +114,19 @@ def children(context: click.Context) -> list[click.Context]:
 
 
 def paragraphs(text: str) -> Iterator[str]:
-    """A text with a request between its paragraphs."""
-    for number, part in enumerate(re.split(r"\n\s*\n", text)):
+    """A text with a request between its paragraphs; those after click's mark are kept as they are."""
+    for number, part in enumerate(re.split(r"\n\s*\n", cleandoc(text))):
         if number:
             yield ".PP"
-        yield escaped(" ".join(part.split()))
+        if part.startswith("\b\n"):
+            yield from as_they_are(part.split("\n")[1:])
+        else:
+            yield escaped(" ".join(part.split()))
+
+
+def as_they_are(lines: list[str]) -> Iterator[str]:
+    """Lines that are not joined, such as those of a table."""
+    yield from (".nf", *map(escaped, lines), ".fi")
 
 
 def terms(records: object) -> Iterator[str]:
@@ -99,18 +136,22 @@ def terms(records: object) -> Iterator[str]:
 
 
 def escaped(text: str) -> str:
-    """Text without what roff obeys: backslashes, hyphens, a full stop or quote at the beginning of a line."""
-    found = text.replace("\\", "\\e").replace("-", "\\-").replace("…", "...")
+    """Text without what roff obeys: backslashes, hyphens, a full stop or quote at the beginning of a line.
+
+    A long line may be broken after each ``|`` of a choice.
+    """
+    found = text.replace("\\", "\\e").replace("-", "\\-").replace("…", "...").replace("|", "|\\:")
     return f"\\&{found}" if found[:1] in {".", "'"} else found
 
 
-def main(folder: str) -> None:
+def main(folder: str = "dist/man") -> None:
     """Write all pages."""
     target = Path(folder)
     target.mkdir(parents=True, exist_ok=True)
     for context in commands():
         name = context.command_path.replace(" ", "-")
         (target / f"{name}.1").write_text(page(context), encoding="utf-8")
+    print(target)
 
 
 if __name__ == "__main__":

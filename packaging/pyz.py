@@ -9,6 +9,22 @@ from pathlib import Path
 
 from bundle import make_bundle
 
+MAIN = """\
+import sys
+
+if sys.version_info < (3, 11):
+    sys.stderr.write(
+        "fatektool: this is Python %d.%d, expected 3.11 or later; start it with a later one, such as "
+        "python3.12 fatektool.pyz (Windows: py -3.12 fatektool.pyz)\\n" % sys.version_info[:2]
+    )
+    sys.exit(2)
+
+from fatektool.cli import main
+
+main()
+"""
+"""What is run first; each Python since 2.7 understands it."""
+
 
 def main(file: str = "dist/fatektool.pyz") -> None:
     """Build it."""
@@ -17,9 +33,9 @@ def main(file: str = "dist/fatektool.pyz") -> None:
     with tempfile.TemporaryDirectory() as work:
         folder = Path(work) / "bundle"
         make_bundle(folder)
-        zipapp.create_archive(
-            folder, target, interpreter="/usr/bin/env python3", main="fatektool.cli:main", compressed=True
-        )
+        (folder / "__main__.py").write_text(MAIN, encoding="utf-8")
+        zipapp.create_archive(folder, target, interpreter="/usr/bin/env python3", compressed=True)
+    target.chmod(0o755)  # for all users of the computer
     print(target)
 
 

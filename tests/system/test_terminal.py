@@ -48,11 +48,13 @@ def devices(**consoles: bool) -> Iterator[None]:
         file = Device(descriptor, "r" if is_read else "w", closefd=False)
         buffer = io.BufferedReader(file) if is_read else io.BufferedWriter(file)
         monkeypatch.setattr(sys, name, io.TextIOWrapper(buffer))
-    streams.mend_streams()
-    yield
-    monkeypatch.undo()
-    for descriptor in null.values():
-        os.close(descriptor)
+    try:
+        streams.mend_streams()
+        yield
+    finally:
+        monkeypatch.undo()
+        for descriptor in null.values():
+            os.close(descriptor)
 
 
 def test_consoles_are_terminals() -> None:
