@@ -20,12 +20,25 @@ from operator import sub
 from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.protocol.commands import ReadDiscretes, ReadMixed, ReadRegisters, Request
-from fatektool.protocol.elements import KINDS, Element, Stretch
+from fatektool.protocol.elements import KINDS, Element, ElementKind, Stretch
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
 _WHOLE_32: Final = {"DRT", "DRC"}
+
+
+def _line_of(kind: ElementKind) -> tuple[str, int]:
+    """The line of a kind, and how many atoms an element has after its first."""
+    symbol, bits = kind.symbol, kind.bits
+    if bits > 1 and symbol.startswith(("W", "DW")):
+        return symbol[-1], bits - 1
+    if bits == 32 and symbol not in _WHOLE_32:
+        return symbol[1:], 1
+    return symbol, 0
+
+
+_LINES: Final = {symbol: _line_of(kind) for symbol, kind in KINDS.items()}
 
 Atom = tuple[str, int]
 """Symbol of the line, address."""
@@ -39,12 +52,8 @@ def atoms_of(element: Element) -> list[Atom]:
 
 def _span(element: Element) -> tuple[str, int, int]:
     """The line of an element, with its first and last address on it."""
-    symbol, address, bits = element.symbol, element.address, element.kind.bits
-    if bits > 1 and symbol.startswith(("W", "DW")):
-        return symbol[-1], address, address + bits - 1
-    if bits == 32 and symbol not in _WHOLE_32:
-        return symbol[1:], address, address + 1
-    return symbol, address, address
+    symbol, more = _LINES[element.symbol]
+    return symbol, element.address, element.address + more
 
 
 def parts_of(element: Element, value: int) -> dict[Atom, int]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.protocol.commands import (
@@ -26,6 +26,12 @@ WORD: Final = 16
 def turnaround_bytes(turnaround_s: float, byte_time_s: float) -> float:
     """A PLC's turnaround, as bytes of line time."""
     return turnaround_s / byte_time_s
+
+
+@lru_cache(maxsize=16)
+def costs_of(codec: Codec, turnaround: float, *, writes: bool) -> Costs:
+    """The costs of ``Costs``, kept from one plan to the next: a job makes many plans for one line."""
+    return Costs(codec, turnaround, writes=writes)
 
 
 class Costs:

@@ -13,7 +13,7 @@ from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 from fatektool.planner.atoms import lines_of
-from fatektool.planner.costs import Costs
+from fatektool.planner.costs import costs_of
 from fatektool.planner.edges import Edges
 from fatektool.planner.paths import Run, Search
 from fatektool.protocol.commands import ReadDiscretes, ReadMixed, ReadRegisters, Request
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from fatektool.planner.atoms import AtomLine
+    from fatektool.planner.costs import Costs
     from fatektool.planner.paths import Edge
     from fatektool.protocol.codec import Codec
 
@@ -56,7 +57,7 @@ def planned_reads(
     Raises:
         UsageError: the protocol does not have one of the elements.
     """
-    costs = Costs(codec, turnaround, writes=False)
+    costs = costs_of(codec, turnaround, writes=False)
     groups = neighbourhoods(elements, codec, writes=False)
     return chain.from_iterable(_plan(lines_of(some, limits or {}), costs) for some in groups)
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fatektool.planner.atoms import Atom, lines_of, parts_of, value_of
-from fatektool.planner.costs import Costs
+from fatektool.planner.costs import costs_of
 from fatektool.planner.edges import Edges
 from fatektool.planner.paths import Run, least_path
 from fatektool.planner.reads import neighbourhoods, packed
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from fatektool.planner.atoms import AtomLine
+    from fatektool.planner.costs import Costs
     from fatektool.protocol.codec import Codec
 
 
@@ -39,7 +40,7 @@ def plan_writes(
     parts: dict[Atom, int] = {}
     for element, value in wanted:
         parts |= parts_of(element, value)
-    costs = Costs(codec, turnaround, writes=True)
+    costs = costs_of(codec, turnaround, writes=True)
     requests: list[Request[None]] = []
     for some in neighbourhoods((element for element, _ in wanted), codec, writes=True):
         requests += _plan(lines_of(some, None), parts, costs)

@@ -67,6 +67,9 @@ class Decoder(Protocol):
 class Codec(Protocol):
     """One protocol. Stateless."""
 
+    def __hash__(self) -> int:
+        """One codec is one key, such as of the costs of its plans."""
+
     @property
     def name(self) -> str:
         """The name of ``--protocol``."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from random import Random
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fatektool.planner import plan_reads, plan_writes
-from fatektool.planner.costs import Costs
+from fatektool.planner.costs import Costs, costs_of
 from fatektool.planner.paths import Edge, Run, least_path
 from fatektool.protocol.commands import (
     ReadDiscretes,
@@ -158,3 +159,12 @@ def test_where_every_path_is_mixed() -> None:
         "R",
         "R",
     ]  # 11 words, as dear as 9
+
+
+def test_costs_are_kept_for_the_next_plan() -> None:
+    """A job makes many plans for one line. Another protocol, turnaround or way has its own costs."""
+    assert costs_of(FACON, 7.5, writes=False) is costs_of(FACON, 7.5, writes=False)
+    for codec, turnaround, writes in product((FACON, MSERIES), (0.0, 7.5), (False, True)):
+        kept, made = costs_of(codec, turnaround, writes=writes), Costs(codec, turnaround, writes=writes)
+        assert kept.mixed_base == made.mixed_base
+        assert [kept.run(symbol, 3) for symbol in KINDS] == [made.run(symbol, 3) for symbol in KINDS]
