@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import copy
 import pickle
 from dataclasses import FrozenInstanceError, fields, replace
@@ -11,6 +12,7 @@ import pytest
 
 from fatektool.protocol.commands import Loopback, ReadBriefStatus, ReadDetailedStatus, ReadPage, WritePage
 from fatektool.value import Value, frozen
+from tests.tree import PACKAGE
 
 
 @frozen
@@ -94,3 +96,19 @@ def test_it_is_copied_and_pickled() -> None:
     point = Point(1, "a")
     assert copy.copy(point) == copy.deepcopy(point) == point
     assert pickle.loads(pickle.dumps(point)) == point  # noqa: S301  # of our own
+
+
+def test_every_dataclass_has_a_docstring() -> None:
+    """Without one, ``dataclass`` makes it from the signature: 2 ms at each start, and more the first time."""
+    missing = [
+        f"{path.relative_to(PACKAGE)}: {node.name}"
+        for path in PACKAGE.rglob("*.py")
+        for node in ast.walk(ast.parse(path.read_text("utf-8")))
+        if isinstance(node, ast.ClassDef) and _is_dataclass(node) and not ast.get_docstring(node)
+    ]
+    assert not missing
+
+
+def _is_dataclass(node: ast.ClassDef) -> bool:
+    words = [ast.unparse(each).partition("(")[0] for each in node.decorator_list]
+    return "dataclass" in words or "frozen" in words

@@ -5,6 +5,7 @@ One file a command; each is loaded when its command is used.
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 import warnings
@@ -29,7 +30,9 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
     """Run the command line and end the process with its exit code."""
     words = list(sys.argv[1:] if arguments is None else arguments)
     mend_streams()
-    sys.exit(run(words))
+    code = run(words)
+    gc.freeze()  # the end of the process need not search all that was loaded for cycles
+    sys.exit(code)
 
 
 def run(words: list[str]) -> int:

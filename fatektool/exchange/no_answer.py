@@ -87,6 +87,8 @@ def no_answer(
 
 @frozen
 class _Report(Value):
+    """What is known when no answer was received."""
+
     state: LinkState
     receiver: Receiver
     request: Request[Any]

@@ -83,6 +83,8 @@ class _Draft:
 
 @dataclass(slots=True)
 class _DraftBox:
+    """A box whose inputs are still being read."""
+
     function: Leaf
     inputs: list[_Draft]
     level: int = 0
