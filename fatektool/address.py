@@ -26,6 +26,9 @@ if TYPE_CHECKING:
     from fatektool.protocol.modbus.map import ModbusMap
     from fatektool.transport.target import Target
 
+READ_ONLY_VARIABLE: Final = "FATEKTOOL_READ_ONLY"
+"""The environment variable that makes every line of a process read-only."""
+
 DEFAULT_FORMATS: Final = "7E1; 8E1 for mseries and modbus-rtu"
 
 

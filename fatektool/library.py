@@ -13,10 +13,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from fatektool import client
-from fatektool.address import PlcAddress
+from fatektool.address import READ_ONLY_VARIABLE, PlcAddress
 from fatektool.callbacks import ignore
 from fatektool.connection import connect as open_plc
 from fatektool.errors import PlcError, UsageError
@@ -31,6 +31,9 @@ if TYPE_CHECKING:
     from fatektool.protocol.commands import Command
     from fatektool.protocol.elements import Element
     from fatektool.protocol.values import Value
+
+_YES: Final = frozenset(("1", "true", "t", "yes", "y", "on"))
+_NO: Final = frozenset(("", "0", "false", "f", "no", "n", "off"))
 
 
 class Plc(client.Plc):
@@ -128,6 +131,8 @@ def connect(
 ) -> Plc:
     """Open the line to a PLC. Nothing is sent yet, but for ``modbus_map="custom"``.
 
+    With ``FATEKTOOL_READ_ONLY=1`` in the environment the line is read-only, whatever ``settings`` say.
+
     Args:
         target: ``"/dev/ttyUSB0"``, ``"tcp://192.168.2.3"`` and others, as of ``PlcAddress``; a name of the
             inventory, whose settings it then has; or a whole ``PlcAddress``.
@@ -141,16 +146,29 @@ def connect(
         settings: the other fields of ``PlcAddress``: ``station=3``, ``protocol="mseries"``, ``timeout_s=2``.
 
     Raises:
-        UsageError: a setting has a wrong value; a name is not in the inventory;
+        UsageError: a setting or ``FATEKTOOL_READ_ONLY`` has a wrong value; a name is not in the inventory;
             the protocol does not have one of ``needs``.
         DataError: the inventory has faults.
         LineError: the port or gateway cannot be opened; ``PortBusy`` among them.
     """
     address = target if isinstance(target, PlcAddress) else _address(target, inventory)
+    if _is_read_only():
+        address = address.changed(read_only=True)
     opened = open_plc(
         address.changed(**settings), needs=needs, lend=lend, note=note, waiting=waiting, warn=warn
     )
     return Plc.of(opened)
+
+
+def _is_read_only() -> bool:
+    """What the environment says, in the same words as for the command line."""
+    import os
+
+    text = os.environ.get(READ_ONLY_VARIABLE, "")
+    word = text.strip().lower()
+    if word not in _YES | _NO:
+        raise UsageError(f"{READ_ONLY_VARIABLE}: expected 1 or 0, got {text!r:.80}")
+    return word in _YES
 
 
 def _address(target: str, inventory: str | os.PathLike[str] | None) -> PlcAddress:

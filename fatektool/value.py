@@ -50,9 +50,11 @@ def frozen(cls: type[C]) -> type[C]:
     """
     made = dataclass(init=False, repr=False, eq=False, slots=True)(cls)
     words, lines, names = ["self"], [], {}
+    types: dict[str, object] = {"return": None}
     for field in fields(made):  # type: ignore[arg-type]  # mypy does not see that it is a dataclass now
         names[f"set_{field.name}"] = getattr(made, field.name).__set__
         words.append(field.name)
+        types[field.name] = field.type
         if field.default is not MISSING:
             names[f"default_{field.name}"] = field.default
             words[-1] += f"=default_{field.name}"
@@ -62,4 +64,5 @@ def frozen(cls: type[C]) -> type[C]:
     text = "\n".join([f"def __init__({', '.join(words)}):", *(lines or [" pass"])])
     exec(text, names)  # noqa: S102  # as dataclass does, with names of fields alone
     made.__init__ = names["__init__"]  # type: ignore[method-assign]
+    made.__init__.__annotations__ = types  # for help() and editors
     return made

@@ -199,6 +199,37 @@ def test_a_line_that_fails_half_way_says_that_values_may_be_written() -> None:
 # --- the inventory ----------------------------------------------------------------------------------------
 
 
+@pytest.mark.parametrize("value", ["1", "true", "ON", " yes "])
+def test_connect_obeys_the_environment_that_says_read_only(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, value: str
+) -> None:
+    assert (folder / "fatek.toml").exists()
+    monkeypatch.setenv("FATEKTOOL_READ_ONLY", value)
+    address = fatektool.PlcAddress("sim:", read_only=False)
+    for opened in (
+        fatektool.connect("sim:"),
+        fatektool.connect("sim:", read_only=False),
+        fatektool.connect(address),
+        fatektool.connect("hall-1"),
+    ):
+        with opened as plc:
+            with pytest.raises(fatektool.errors.LineReadOnly):
+                plc.write({"R1": 5})
+            with pytest.raises(fatektool.errors.LineReadOnly):
+                plc.run()
+            assert plc.read("R1") == {"R1": 0}
+
+
+def test_other_values_of_that_variable(monkeypatch: pytest.MonkeyPatch) -> None:
+    for nothing in ("", "0", "False", "no", "off"):
+        monkeypatch.setenv("FATEKTOOL_READ_ONLY", nothing)
+        with fatektool.connect("sim:") as plc:
+            plc.write({"R1": 5})
+    monkeypatch.setenv("FATEKTOOL_READ_ONLY", "maybe")
+    with pytest.raises(fatektool.UsageError, match="FATEKTOOL_READ_ONLY: expected 1 or 0, got 'maybe'"):
+        fatektool.connect("sim:")
+
+
 def test_connect_knows_the_inventory(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     other = folder / "other.toml"
     other.write_text('[plc.oven]\ntarget = "sim:"\nstation = 7\nread_only = true\n', encoding="utf-8")

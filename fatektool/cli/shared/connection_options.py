@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar
 import click
 from click.core import ParameterSource
 
-from fatektool.address import CHECKS, DEFAULT_FORMATS, DEFAULTS, PlcAddress
+from fatektool.address import CHECKS, DEFAULT_FORMATS, DEFAULTS, READ_ONLY_VARIABLE, PlcAddress
 from fatektool.checks import YesNo
 from fatektool.cli.shared.connection import Connection
 from fatektool.cli.shared.inventory_file import complete_target, inventory_option
@@ -135,7 +135,7 @@ ROWS: Final = (
         "read_only",
         ("--read-only",),
         "Refuse every command that would write to the PLC.",
-        variable="FATEKTOOL_READ_ONLY",
+        variable=READ_ONLY_VARIABLE,
     ),
 )
 
