@@ -5,7 +5,6 @@ One file a command; each is loaded when its command is used.
 
 from __future__ import annotations
 
-import gc
 import os
 import sys
 import warnings
@@ -31,6 +30,8 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
     words = list(sys.argv[1:] if arguments is None else arguments)
     mend_streams()
     code = run(words)
+    import gc
+
     gc.freeze()  # the end of the process need not search all that was loaded for cycles
     sys.exit(code)
 
