@@ -23,7 +23,8 @@ class StatusReport(Value):
         station: 1 to 254.
         protocol: ``facon`` or ``mseries``.
         brief: the answer to 40.
-        detailed: the answer to 53; None if it was not asked for.
+        detailed: the answer to 53; None if it was not asked for, or refused.
+        refused: how an M-series PLC refused 53, whose layout its paper does not have; empty if it did not.
     """
 
     time: str
@@ -32,6 +33,7 @@ class StatusReport(Value):
     protocol: str
     brief: BriefStatus
     detailed: DetailedStatus | RawStatus | None
+    refused: str = ""
 
     @property
     def system(self) -> System | None:
@@ -53,13 +55,20 @@ def read_status(plc: Plc, *, brief: bool = False) -> StatusReport:
 
     Raises:
         LineError: no answer.
-        PlcRefused: the PLC refuses one of them.
+        PlcRefused: the PLC refuses 40; or 53, and is none of the M-series.
     """
     short = plc.brief_status()
-    detailed = None if brief else plc.link.ask(ReadDetailedStatus())
+    detailed, refused = None, ""
+    if not brief:
+        try:
+            detailed = plc.link.ask(ReadDetailedStatus())
+        except PlcRefused as error:
+            if not short.m_series:
+                raise
+            refused = error.message
     from fatektool.files.times import utc  # not before there is one
 
-    return StatusReport(utc(), plc.target, plc.link.station, plc.link.codec.name, short, detailed)
+    return StatusReport(utc(), plc.target, plc.link.station, plc.link.codec.name, short, detailed, refused)
 
 
 def brief_or_none(plc: Plc) -> BriefStatus | None:

@@ -33,6 +33,8 @@ def status_command(connection: Connection, voice: Voice, *, brief: bool) -> None
         from fatektool.cli.plc.documents import status_document  # its modules are for JSON alone
 
         document = status_document(report)
+    if report.refused:
+        voice.warn(f"{report.refused}: the paper of the M-series has no layout for it; this is from 40 alone")
     voice.show(document, table(_rows(report)))
 
 
