@@ -239,7 +239,7 @@ class _Batch(Generic[A]):
             if self.answers[place] != self.answers[place + 1]:
                 telling.append(place)
                 break
-        held = all(self._ask_behind_fence(place) == self.answers[place] for place in telling)
+        held = all(self._ask_after_fence(place) == self.answers[place] for place in telling)
         if not held or self._link.unsolicited != unsolicited:
             self._read_again(end + len(suspects))
         self._proven = end
@@ -247,9 +247,9 @@ class _Batch(Generic[A]):
     def _read_again(self, end: int) -> None:
         """Read the unproven answers before a place again, each after a fence."""
         for place in range(self._proven, end):
-            self.answers[place] = self._ask_behind_fence(place)
+            self.answers[place] = self._ask_after_fence(place)
         self._proven = end
 
-    def _ask_behind_fence(self, place: int) -> A:
+    def _ask_after_fence(self, place: int) -> A:
         self._link.fence(self._requests[place])
         return self._link.ask(self._requests[place])

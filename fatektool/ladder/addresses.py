@@ -5,7 +5,7 @@ A contact or coil names a **bit address** of 12 bits, an operand of a function a
     bit    000 X   100 Y   200 T   300 C   400 TR   428 S   810 M   FE2-FFB drawing
            FFC-FFE outputs of a function
     byte   0100 R3840   0390 T   0590 C   0720 C200   0800 the bits, 8 a byte   0A00 R0   2800 R5000   4000 D
-           7000 pointers   75ab D behind two pointers   8000 + address: behind pointer V
+           7000 pointers   75ab D by two pointers   8000 + address: by pointer V
 
 Each row of the tables carries its grade (see ``grades``).
 """

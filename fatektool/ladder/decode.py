@@ -151,12 +151,12 @@ def _begins(words: Sequence[int], place: int) -> bool:
         return False
     if first.form.shape is not Shape.CONTACT or first.bit in DRAWING:
         return True
-    behind = place + len(first.words)
-    if behind == len(words):
+    after = place + len(first.words)
+    if after == len(words):
         return False
-    second = _instruction(words, behind)
+    second = _instruction(words, after)
     if second is None:  # a function or mark that is not known; below stand registers, and FFFF is -1
-        return words[behind] & 0xFF >= _PREFIX and words[behind] != _END
+        return words[after] & 0xFF >= _PREFIX and words[after] != _END
     return _can_follow(second, like_a_register=words[place] & 0x01FF < _LAST_LIKE_D)
 
 

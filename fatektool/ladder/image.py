@@ -49,9 +49,9 @@ def words_of_image(image: bytes, *, swapped: bool = False) -> tuple[int, ...]:
 def fbs_code(words: Sequence[int]) -> Code:
     """The code of an image of the FBs family with a valid header."""
     used, main_end = words[_USED], words[_MAIN_END] // 2
-    behind = CODE_WORD + used + 1
-    main = words[CODE_WORD : min(main_end, behind) - 1]
-    return Code.of(main, words[CODE_WORD + len(main) + 1 : behind], places=(CODE_WORD, main_end))
+    after = CODE_WORD + used + 1
+    main = words[CODE_WORD : min(main_end, after) - 1]
+    return Code.of(main, words[CODE_WORD + len(main) + 1 : after], places=(CODE_WORD, main_end))
 
 
 def fbe_code(image: bytes) -> Code:

@@ -63,10 +63,10 @@ class Instruction:
         if not self.known:
             return self.values
         head = tuple(fixed | free for fixed, free in zip(self.form.fixed, self.free, strict=True))
-        behind = (
+        after = (
             words_of(value, part.words) for part, value in zip(self.form.parts, self.values, strict=True)
         )
-        return sum(behind, head)
+        return sum(after, head)
 
     @property
     def bit(self) -> int | None:

@@ -234,7 +234,7 @@ _FUNCTIONS: Final = (
         grade=B,
         usual="0",
     ),
-    # The course of the program. Their layout is certain, as every file reads on behind them.
+    # The order of the program. Their layout is certain: in each file the next instruction is read right.
     _function(0x84, "STP {0}", BIT_IN, grade=B, usual="C", begins=True),
     _function(0xF1, "STP {0}", BIT_IN, grade=B, usual="C", begins=True),
     _function(0x86, "TO {0}", BIT_OUT, grade=B, usual="C"),

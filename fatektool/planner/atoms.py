@@ -151,7 +151,7 @@ def lines_of(elements: Iterable[Element | Stretch], limits: Mapping[str, int] | 
         ends = _stretch_ends(firsts, lasts, kind.stride)
         for end, after in zip(ends, [*ends[1:], 0], strict=True):
             if after and limits is not None and firsts[end] <= limit:
-                continue  # the gap behind this stretch may be read over
+                continue  # the gap after this stretch may be read over
             within = limits is not None and firsts[begin] <= limit
             past = lasts[end - 1] + kind.stride
             lines.append(

@@ -106,21 +106,21 @@ def _likeness(text: str, name: str) -> int:
     score = 0
     for place, letter in enumerate(text):
         if ord(letter) >= _ASCII:
-            behind = text[place + 1 : place + 2]
-            around = text[max(0, place - 1) : place] + behind
+            after = text[place + 1 : place + 2]
+            around = text[max(0, place - 1) : place] + after
             if name in SINGLE:
-                score += _letter(letter, around, behind or " ", name)
+                score += _letter(letter, around, after or " ", name)
             else:
                 score += _ideograph(letter, around, name)
     return score
 
 
-def _letter(letter: str, around: str, behind: str, name: str) -> int:
+def _letter(letter: str, around: str, after: str, name: str) -> int:
     if letter in _SIGNS:
         return 0
     if letter not in SINGLE[name]:
         return -1
-    is_odd = name == "cp1252" and behind.lower() not in _BEFORE.get(letter, behind.lower())
+    is_odd = name == "cp1252" and after.lower() not in _BEFORE.get(letter, after.lower())
     if is_odd or not any(near.isascii() and near.isalpha() for near in around):
         return 1
     return 3 if letter in _TURKISH else 2

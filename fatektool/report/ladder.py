@@ -168,8 +168,8 @@ class _Picture:
         """The edges of an instruction's box, open at its title."""
         left, right = map(self._x, columns)
         top, foot = map(self._y, lines)
-        behind = left + (2 + width_of(title)) * _COLUMN
-        self._signs.append(f"M{behind} {top}H{right}V{foot}H{left}V{top}h{_COLUMN}")
+        after = left + (2 + width_of(title)) * _COLUMN
+        self._signs.append(f"M{after} {top}H{right}V{foot}H{left}V{top}h{_COLUMN}")
         self.write(lines[0], columns[0] + 2, title)
         self._mark(number, left - 13, top - _TALL - 4, right + 4, foot + 4)
 

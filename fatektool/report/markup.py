@@ -80,8 +80,8 @@ def figure(value: object, shown: str | None = None, unit: str = "") -> Html:
     """
     if shown is None:
         shown = plain(value)
-    behind = f" {unit}" if unit and value is not None else ""
-    return tag("data", f"{shown}{behind}", value=json.dumps(value, allow_nan=False))
+    after = f" {unit}" if unit and value is not None else ""
+    return tag("data", f"{shown}{after}", value=json.dumps(value, allow_nan=False))
 
 
 def plain(value: object) -> str:

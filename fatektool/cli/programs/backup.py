@@ -109,7 +109,7 @@ def backup_command(
 
 
 def _write_raw(raw: Path, found: Backup, path: Path, *, overwrite: bool) -> None:
-    """Write the bare pages, behind the backup: what fails here takes nothing from that."""
+    """Write the bare pages, after the backup: what fails here takes nothing from that."""
     try:
         write_whole(raw, found.program.data, overwrite=overwrite)
     except FatektoolError as error:

@@ -27,7 +27,7 @@ def listing_lines(networks: Sequence[Network], comments: Comments, *, words: boo
 
 
 def _heading(network: Network, comments: Comments) -> Iterator[str]:
-    """A network's heading, behind its unit's where that begins."""
+    """A network's heading, after its unit's where that begins."""
     unit = text_in(network.addresses, comments.units)
     if unit:
         yield f"unit {unit}"

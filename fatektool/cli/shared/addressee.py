@@ -1,4 +1,4 @@
-"""The PLC that a write goes to, as every question before it and every result behind it name it.
+"""The PLC that a write goes to, as every question before it and every result after it name it.
 
 ::
 

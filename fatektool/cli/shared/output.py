@@ -77,7 +77,7 @@ def shown_time(created: str, stream: TextIO | None = None) -> str:
 
 
 class Held:
-    """Lines for stderr while a screen is drawn, which they would break: shown on it, and printed behind it.
+    """Lines for stderr while a screen is drawn, which they would break: shown on it, and printed after it.
 
     Where stderr goes elsewhere, they go there at once.
 

@@ -112,7 +112,7 @@ class Reading(Generic[T]):
         self._asked.set()
 
     def do(self, job: Callable[[], object]) -> None:
-        """Have something done on the line, at once or behind the round that is being read; in the thread."""
+        """Have something done on the line, at once or after the round that is being read; in the thread."""
         self._jobs.append(job)
         self._asked.set()
 

@@ -49,7 +49,7 @@ _CONTROLS: Final = {
 
 
 class DataRewrite:
-    """One attempt to put the data of a file into a PLC. It is the part behind the program's.
+    """One attempt to put the data of a file into a PLC. It is the part after the program's.
 
     Args:
         plc: the PLC, in STOP when this is written.

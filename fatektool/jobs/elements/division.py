@@ -134,9 +134,9 @@ class Division:
             if not self.refuses(asked):
                 self._row, self._last = [], None
                 return [*between, *elements[at + STEP :]]
-            behind = f"is {asked}" if self._last == end else f"are {self._last} and {asked}"
+            after = f"is {asked}" if self._last == end else f"are {self._last} and {asked}"
             self._refusals.leave_out(
-                between, f"each of {begin} to {end} is refused, and so {behind}: a gap, or past the end"
+                between, f"each of {begin} to {end} is refused, and so {after}: a gap, or past the end"
             )
             self._last = asked
         return []

@@ -1,4 +1,4 @@
-"""What a number of errors says about the rate behind them (Clopper and Pearson, 1934)."""
+"""Limits of an error rate, from the number of errors in a test (Clopper and Pearson, 1934)."""
 
 from __future__ import annotations
 

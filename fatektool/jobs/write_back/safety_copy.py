@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from fatektool.jobs.write_back.plan import SafetyCopy
 
 _LONGEST_NAME: Final = 150
-"""In bytes; 255 are all that a name may have, and station, time and a number come behind it."""
+"""In bytes; 255 are all that a name may have, and station, time and a number come after it."""
 
 
 @dataclass(slots=True)

@@ -34,7 +34,7 @@ _PINS: Final = {
     0xBEF0: _TIMER,
     0x40F0: Pins(("CK", "CLR"), ("CUP",)),  # field: two lines, the second clears, the output CUP
     0x00F0: Pins(("CK", "U/D", "CLR"), ("CUP",)),  # manual
-    0xACF0: Pins(("EN",), ()),  # print: MOV; a coil behind it hangs on the same line
+    0xACF0: Pins(("EN",), ()),  # print: MOV; a coil after it is on the same line
     0xADF0: Pins(("EN",), ()),
     0x96F0: Pins(("EN",), ("CY",)),  # manual
     0x1AF0: _LINK,  # print: HSPSO

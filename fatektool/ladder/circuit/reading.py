@@ -59,7 +59,7 @@ class _Draft:
         depth: the levels in it.
         hung: it has a coil or box.
         done: complete: the next instruction may begin another line.
-        behind: the function at the end of the line, if the state of the line after it is not known.
+        after: the function at the end of the line, if the state of the line after it is not known.
         level: the number of nested boxes.
     """
 
@@ -68,7 +68,7 @@ class _Draft:
     depth: int = 1
     hung: bool = False
     done: bool = False
-    behind: Leaf | None = None
+    after: Leaf | None = None
     level: int = 0
 
     def node(self) -> Node:
@@ -177,10 +177,10 @@ class _Reader:
         if not self._stack:
             raise _nothing_before(leaf)
         top = self._stack[-1]
-        if top.behind is not None:
-            raise _Unclear(f"the state of the line from {_text(top.behind)} to {_text(leaf)} is not known")
+        if top.after is not None:
+            raise _Unclear(f"the state of the line from {_text(top.after)} to {_text(leaf)} is not known")
         if self._box is not None and self._stack[0].lines is not self._box.outputs:
-            self._box = None  # the line goes on behind it
+            self._box = None  # the line goes on after it
         return top
 
     def _go_on(self, leaf: Leaf) -> None:
@@ -273,7 +273,7 @@ class _Reader:
             draft.lines = self._box.inputs
         first.parts.append(self._box)
         first.hung = first.done = True
-        first.behind = None if pins is not None and not pins.outputs and not more else leaf
+        first.after = None if pins is not None and not pins.outputs and not more else leaf
         self._stack = [first]
 
     def _alone(self, leaf: Leaf) -> None:

@@ -1,7 +1,7 @@
 """A circuit -> its plan.
 
 A line goes to the right from where it begins. What hangs on it at one place stands one below the other, in
-the order of the instructions, and what goes on behind it comes last. A line that takes up a stored signal
+the order of the instructions, and what goes on after it comes last. A line that takes up a stored signal
 hangs where that was stored, if the way down is free; else the store is drawn as a coil, and what takes it up
 as contacts of that name, which says the same.
 """
@@ -155,7 +155,7 @@ class _Layout:
         return row, last
 
     def _run(self, nodes: Sequence[Node], place: _Place) -> tuple[_Place, int]:
-        """What conducts, one behind the other; give its end, and the next row that is free below."""
+        """What conducts, one after the other; give its end, and the next row that is free below."""
         below = place.row + 1
         for node in nodes:
             if _is_store(node) and node.store not in self._by_name:

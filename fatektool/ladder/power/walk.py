@@ -95,12 +95,12 @@ class Walk(Generic[T]):
         signals: what they are.
 
     Attributes:
-        behind: what goes on behind each leaf, by its number: the net of a plan is made of these.
+        after: what is carried after each leaf, by its number: the net of a plan is made of these.
         reached: what reaches each coil, and each input of a function, by the number of its instruction.
     """
 
     def __init__(self, circuit: Circuit, signals: Signals[T]) -> None:
-        self.behind: dict[int, T] = {}
+        self.after: dict[int, T] = {}
         self.reached: dict[int, tuple[T, ...]] = {}
         self._signals = signals
         self._stores: dict[int, T] = {}
@@ -159,11 +159,11 @@ class Walk(Generic[T]):
             self._line(line)
 
     def _leaf(self, leaf: Leaf, carried: T, before: _Before[T]) -> T:
-        found = self._behind(leaf, carried, before)
-        self.behind[leaf.number] = self._on_the_wire(found, before)
+        found = self._after(leaf, carried, before)
+        self.after[leaf.number] = self._on_the_wire(found, before)
         return found
 
-    def _behind(self, leaf: Leaf, carried: T, before: _Before[T]) -> T:
+    def _after(self, leaf: Leaf, carried: T, before: _Before[T]) -> T:
         signals = self._signals
         match leaf.role:
             case Role.COIL:

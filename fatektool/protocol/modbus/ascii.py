@@ -75,7 +75,7 @@ ASCII: Final = ModbusCodec(
         lambda size: 2 * size + 7,
         lambda raw: raw[:5],
         before=(FramePart("start", 1, always("begins a frame")),),
-        behind=(FramePart("LRC", 2, always("right")), FramePart("end", 2, always("CR LF"))),
+        after=(FramePart("LRC", 2, always("right")), FramePart("end", 2, always("CR LF"))),
         checksum=_checksum,
         octet=2,
         data_bits=7,

@@ -100,7 +100,7 @@ class ModbusExplainer:
             tuple(self._fields(frame, parts)),
             frame.station,
             frame.command,
-            True if self._framing.behind else None,
+            True if self._framing.after else None,
             fault,
         )
 
@@ -119,7 +119,7 @@ class ModbusExplainer:
             if part.size:
                 yield Field(part.name, frame.raw[at:end], part.meaning)
             at = end
-        yield from _around(self._framing.behind, frame.raw[at:])
+        yield from _around(self._framing.after, frame.raw[at:])
 
     def _who(self, station: int) -> str:
         """A station as text."""

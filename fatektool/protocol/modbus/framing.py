@@ -40,7 +40,7 @@ class Framing:
         size: length of a frame around a PDU of so many bytes.
         repeated: the bytes of a request that a valid answer repeats: station, function, number.
         before: the parts before the station.
-        behind: the parts after the PDU; none if there is no checksum.
+        after: the parts after the PDU; none if there is no checksum.
         checksum: of station and PDU, as it is sent; None if there is none.
         octet: bytes on the wire for one byte of station and PDU.
         data_bits: that a serial line needs; None if it is not used there.
@@ -58,7 +58,7 @@ class Framing:
     size: Callable[[int], int]
     repeated: Callable[[bytes], bytes]
     before: tuple[FramePart, ...] = ()
-    behind: tuple[FramePart, ...] = ()
+    after: tuple[FramePart, ...] = ()
     checksum: Callable[[bytes], bytes] | None = None
     octet: int = 1
     data_bits: int | None = None

@@ -55,7 +55,7 @@ RTU: Final = ModbusCodec(
         RtuDecoder,
         lambda size: size + 3,
         lambda raw: raw[:2],
-        behind=(FramePart("CRC", 2, always("right")),),
+        after=(FramePart("CRC", 2, always("right")),),
         checksum=crc_bytes,
         data_bits=8,
         quiet_chars=3.5,

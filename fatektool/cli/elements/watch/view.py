@@ -31,7 +31,7 @@ class WatchView:
         top: the place of the first that is shown.
         space: how many are shown.
         is_paused: no rounds are wanted.
-        prompt: what is being typed behind ``w``; None while nothing is.
+        prompt: what is being typed after ``w``; None while nothing is.
         message: an answer to the last key.
         is_over: ``q`` was pressed.
     """

@@ -53,7 +53,7 @@ def name_and_revision(which: str) -> tuple[str, str]:
     """NAME and REV of ``NAME[@REV]``; without REV the newest.
 
     Raises:
-        UsageError: there is an @ and no revision behind it.
+        UsageError: there is an @ and no revision after it.
     """
     name, at, revision = which.partition("@")
     if at and not revision:

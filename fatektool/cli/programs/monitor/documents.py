@@ -72,13 +72,13 @@ def _network(each: LiveNetwork, found: Round) -> dict[str, Any]:
     instructions = [
         {"number": number, "text": instruction.text, "carries": list(carried)}
         for number, _, instruction in each.network.places
-        if (carried := walk.reached.get(number) or _behind(walk, number))
+        if (carried := walk.reached.get(number) or _after(walk, number))
     ]
     return {"number": each.network.number, "reason": None, "instructions": instructions}
 
 
-def _behind(walk: Walk[State], number: int) -> tuple[State, ...]:
-    return (walk.behind[number],) if number in walk.behind else ()
+def _after(walk: Walk[State], number: int) -> tuple[State, ...]:
+    return (walk.after[number],) if number in walk.after else ()
 
 
 def why_document(plc: Plc, why: Why, program: SameProgram, comments: Mapping[str, str]) -> dict[str, Any]:

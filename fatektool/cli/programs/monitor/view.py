@@ -29,7 +29,7 @@ class View:
         shown: how many are shown, as the last frame had it; the last of them may be cut.
         rows_of_top: how many rows the first has, as the last frame had it.
         space: how many rows there were for networks.
-        prompt: what is being typed behind ``/``; None while nothing is.
+        prompt: what is being typed after ``/``; None while nothing is.
         message: an answer to the last key.
         is_over: ``q`` was pressed.
     """
@@ -126,7 +126,7 @@ class View:
             self.is_over = True
 
     def _find(self, element: str) -> None:
-        """To the next network behind the first one shown that has this element, or what it is part of."""
+        """To the next network after the first one shown that has this element, or what it is part of."""
         if not element:
             return
         self._found = element

@@ -68,14 +68,14 @@ class RawExchanger(Exchanger):
             return "timeout"
         wire_s = 2 * len(wanted) * self._link.byte_time_s
         got = self._receive(self._transport.clock() + wire_s + self._link.timeout_s, wanted)
-        before, found, behind = got.partition(wanted)
+        before, found, after = got.partition(wanted)
         if not found:
             kind = self._kind_of(got, len(wanted))
             self._overhear(got)
             return kind
         self._overhear(before)
         self._answered = data
-        self._overhear(behind)
+        self._overhear(after)
         return None
 
     def _receive(self, moment: float, wanted: bytes | None = None) -> bytes:
@@ -110,5 +110,5 @@ class RawExchanger(Exchanger):
 
     def _without(self, found: bytes, text: bytes) -> tuple[bytes, int]:
         """The bytes without the frame of this text, and 1 if it was there."""
-        before, there, behind = found.partition(self._frame.wrap(text))
-        return before + behind, len(there) and 1
+        before, there, after = found.partition(self._frame.wrap(text))
+        return before + after, len(there) and 1

@@ -101,8 +101,8 @@ class Writer:
         inputs = tuple(frame.input_name(pin.number) for pin in box.inputs)
         outputs = tuple(frame.output_name(pin.number) for pin in box.outputs)
         before = max(map(width_of, inputs), default=0)
-        behind = max(map(width_of, outputs), default=0)
-        beside = before + behind + 4
+        after = max(map(width_of, outputs), default=0)
+        beside = before + after + 4
         settings = [
             line
             for setting in frame.settings
@@ -128,7 +128,7 @@ class Writer:
         return [*wrapped(text, columns), *(f" {line}" for line in wrapped(remark, columns - 1))]
 
     def _remark(self, elements: tuple[str, ...]) -> str:
-        """The comments of elements; of several, behind their names."""
+        """The comments of elements; of several, after their names."""
         known = [(element, self._comments[element]) for element in elements if element in self._comments]
         if len(elements) == 1:
             return self._pen.letters.spell(known[0][1]) if known else ""

@@ -45,13 +45,13 @@ class LiveStates:
         """Whether a wire carries; None where it is not known. What has no net is no wire."""
         if net is None:
             return False
-        return True if net == RAIL else either(self._walk.behind[number] for number in net)
+        return True if net == RAIL else either(self._walk.after[number] for number in net)
 
     def of_sign(self, number: int) -> State:
         """Whether a contact conducts, or a coil is on."""
         leaf = self._leaves[number]
         if leaf.role in {Role.LINE, Role.STORE, Role.RECALL}:
-            return self._walk.behind[leaf.number]
+            return self._walk.after[leaf.number]
         if leaf.role is not Role.COIL:
             return self._power.contact(leaf)
         bit = shown_bit(leaf)
