@@ -11,6 +11,7 @@ import pytest
 from fatektool.errors import DataError, FatektoolError, LineError, RestoreIncomplete, UsageError
 from fatektool.files.atomic import file_error, read_bounded, require_folder, require_place
 from fatektool.jobs.programs.backup import backup
+from fatektool.jobs.programs.known import KnownPages
 from fatektool.jobs.programs.reading import MOST_PASSES
 from fatektool.jobs.programs.restore import RestoreOptions, RestoreResult, restore
 from fatektool.jobs.programs.safety import find_safety_backup, save_safety_backup
@@ -19,7 +20,7 @@ from fatektool.program.headers.families import read_header
 from fatektool.program.image import Program
 from fatektool.program.plc_record import fault_of
 from tests.program.samples import backup as backup_of
-from tests.program.samples import document, file_of, header, plc_record, program
+from tests.program.samples import changed, document, file_of, header, plc_record, program
 from tests.rigs import READ_PAGE, WRITE_PAGE, Bench, Seen, framed
 
 if TYPE_CHECKING:
@@ -173,6 +174,37 @@ def test_and_not_one_more() -> None:
     unsteady(bench, MOST_PASSES, set(range(1, MOST_PASSES + 2)))
     with pytest.raises(LineError, match=f"no two of {MOST_PASSES} passes"):
         backup(bench.plc)
+
+
+def unsteady_page(bench: Bench, page: int, agree_from: int) -> None:
+    """Each reading of many pages finds another page until ``agree_from``; a byte of noise comes with it."""
+    readings = 0
+    read_pages = bench.plc.read_pages
+
+    def counted(*words: Any, **named: Any) -> list[bytes]:
+        nonlocal readings
+        readings += 1
+        return read_pages(*words, **named)
+
+    def forge(seen: Seen, answer: bytes) -> bytes:
+        if (seen.command, seen.page) != (READ_PAGE, page):
+            return answer
+        return b"\xff" + (framed(b"014F0" + b"%02X" % readings * 128) if readings < agree_from else answer)
+
+    bench.tap.forge = forge
+    bench.plc.read_pages = counted  # type: ignore[method-assign]  # to count them
+
+
+@pytest.mark.parametrize("agree_from", [MOST_PASSES - 1, MOST_PASSES])
+def test_a_page_that_is_not_as_on_file_is_read_as_many_times(agree_from: int) -> None:
+    bench = Bench(OLD)
+    unsteady_page(bench, 5, agree_from)
+    known = KnownPages((changed(OLD, 5),), "press.json")
+    if agree_from < MOST_PASSES:
+        assert backup(bench.plc, known=known).program == OLD
+        return
+    with pytest.raises(LineError, match=f"no two of {MOST_PASSES} readings of page 5 agree"):
+        backup(bench.plc, known=known)
 
 
 def test_trouble_in_an_earlier_pass_does_not_excuse_two_clean_ones_that_differ() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
@@ -9,8 +10,9 @@ import pytest
 from fatektool.errors import DataError, NoAnswer
 from fatektool.jobs.data.reading import read_data
 from fatektool.program.data.uses import CONSTANT, SYMBOLS, Use, use_of, uses_of
+from fatektool.simulator.plc import SimulatedPlc
 from fatektool.simulator.refusal import Refusal, RefusalCode
-from tests.jobs.data.filled import Filled, disabled_of, fill_at_random, filled, values_of
+from tests.jobs.data.filled import SMALL, Filled, disabled_of, fill_at_random, filled, values_of
 from tests.plant import with_holes
 from tests.rigs import Seen, simulated
 
@@ -38,6 +40,18 @@ def test_a_whole_model_with_file_registers() -> None:
     found = read_data(made.plc, made.plc.detailed_status())
     assert found.values == values_of(made.device)
     assert found.counts == {"R": 8072, "D": 4096, "F": 8192, "RT": 256, "RC": 256, "M": 2002, "S": 1000}
+
+
+@pytest.mark.parametrize("count", [1023, 1024, 1025, 2049])
+def test_no_element_is_lost_between_two_steps(count: int) -> None:
+    """Elements are read some 1000 at a time; the last step may have a single one."""
+    device = SimulatedPlc(1, replace(SMALL, r_registers=count, f_registers=count))
+    fill_at_random(device, count)
+    made = simulated()
+    made.simulation.plcs[1] = device
+    found = read_data(made.plc, made.plc.detailed_status())
+    assert found.counts["R"] == found.counts["F"] == count
+    assert found.values == values_of(device)
 
 
 @pytest.mark.parametrize("fault", ["drop=0.1", "flip=0.1", "late=0.1", "duplicate=0.1"])
