@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import gc
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -79,7 +80,11 @@ def paths() -> Iterator[tuple[str, Path]]:
 
 @cache
 def trees() -> list[tuple[str, ast.Module]]:
-    return [(name, ast.parse(path.read_text(encoding="utf-8"), str(path))) for name, path in paths()]
+    gc.disable()  # it would look through all trees again and again
+    try:
+        return [(name, ast.parse(path.read_text(encoding="utf-8"), str(path))) for name, path in paths()]
+    finally:
+        gc.enable()
 
 
 @cache

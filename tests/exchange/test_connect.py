@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from fatektool import connection
 from fatektool.connection import connect
 from fatektool.errors import DataError, FatektoolError, LineError, NoAnswer, PortBusy, UsageError
 from fatektool.protocol.elements import Element
@@ -75,7 +76,8 @@ def test_a_trace_that_cannot_be_written_leaves_nothing_open(name: str, address: 
     connect(address, lock_wait_s=0).close()
 
 
-def test_a_refused_connection_leaves_no_lock() -> None:
+def test_a_refused_connection_leaves_no_lock(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(connection, "sleep", lambda _: None)  # between the tries
     with socket.socket() as holder:
         holder.bind(("127.0.0.1", 0))
         target = f"tcp://127.0.0.1:{holder.getsockname()[1]}"

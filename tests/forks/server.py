@@ -31,6 +31,7 @@ import threading
 from typing import BinaryIO, NamedTuple, cast
 
 import fatektool
+from fatektool.simulator.build import build_plcs
 
 _OTHERS = ("rich.console", "rich.progress", "rich.table", "rich.live", "serial", "serial.tools.list_ports")
 _STREAMS = (("stdin", "r"), ("stdout", "w"), ("stderr", "w"))
@@ -57,6 +58,7 @@ def load_all() -> None:
             importlib.import_module(module.name)
     for name in _OTHERS:
         importlib.import_module(name)
+    build_plcs()  # and make the program of a simulated PLC
     gc.collect()
     gc.freeze()
 

@@ -9,10 +9,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fatektool.simulator.build import build_plcs
 from fatektool.simulator.elements import KINDS, SymbolKind
 from fatektool.simulator.memory import DiscreteAction
 from fatektool.simulator.models import MODELS
 from fatektool.simulator.plc import SimulatedPlc
+from fatektool.simulator.program import demonstration
+from fatektool.simulator.program.demonstration import program_of
 from fatektool.simulator.program.facon_program import demonstration_program, header_page
 from fatektool.simulator.refusal import Refusal, RefusalCode
 
@@ -64,6 +67,16 @@ def test_demonstration_program_is_plausible_and_repeatable() -> None:
     assert header_page(100, signature="FM", digits="12")[:6] == b"FM12\x00\x64"
     with pytest.raises(ValueError, match="FX30"):
         header_page(100, signature="FX")
+
+
+def test_a_program_is_made_once_and_nobody_changes_that_of_another(monkeypatch: pytest.MonkeyPatch) -> None:
+    first = build_plcs(ladder_words=200, program_seed=9)[1]
+    kept = list(first.pages)
+    monkeypatch.setattr(demonstration, "demonstration_program", lambda *_, **__: pytest.fail("made again"))
+    first.write_page(1, bytes(128))
+    program_of(first.model, seed=9)[2] = b""
+    second = build_plcs(ladder_words=200, program_seed=9)[1]
+    assert list(second.pages) == kept != list(first.pages)
 
 
 def test_a_plc_is_made_of_what_fits() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from collections import defaultdict
+from functools import cache
 
 from fatektool.cli.tools.schema import schema_names
 from tests.test_imports import trees
@@ -17,6 +18,7 @@ ELSEWHERE = {
 """Documents that are not built by the command line."""
 
 
+@cache
 def builders() -> dict[str, set[str]]:
     """The documents that the command line builds, by name, and the functions that do."""
     found: dict[str, set[str]] = defaultdict(set)

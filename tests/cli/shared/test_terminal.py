@@ -108,7 +108,7 @@ def test_nothing_is_asked_if_stdin_is_no_terminal(press: Press) -> None:
 
 @pytest.mark.parametrize("columns", [60, 100])
 def test_a_bar_shows_pages_rate_and_time_left(place: Path, columns: int) -> None:
-    with served(program(1000), baud=115200) as door, Terminal(
+    with served(program(1000)) as door, Terminal(
         "backup", "x.json", "-p", door.target, columns=columns
     ) as terminal:  # fmt: skip
         assert terminal.end() == 0
@@ -122,7 +122,7 @@ def test_a_bar_shows_pages_rate_and_time_left(place: Path, columns: int) -> None
 
 
 def test_the_longest_bar_fits_into_sixty_columns(press: Press) -> None:
-    with served(baud=115200) as door, Terminal(
+    with served() as door, Terminal(
         "restore", press.new, "-p", door.target, "--yes", columns=60
     ) as terminal:  # fmt: skip
         assert terminal.end() == 0
