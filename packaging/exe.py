@@ -1,7 +1,7 @@
-"""Build ``fatektool.exe``, one file without a Python: python packaging/exe.py [FOLDER].
+"""Build ``fatektool.exe``, one file without a Python: python packaging/exe.py [FOLDER [SCRIPT ...]].
 
-For a Python of Windows that has fatektool and PyInstaller. PyInstaller does not see modules that are imported
-by name, so all of them are named.
+For a Python of Windows with ``pip install .[exe]``. With SCRIPTs, ``fatektool-try.exe`` is built, too: of the
+same parts, but it runs the SCRIPTs.
 """
 
 from __future__ import annotations
@@ -10,27 +10,56 @@ import sys
 import tempfile
 from pathlib import Path
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).resolve().parent.parent
 ENTRY = "from fatektool.cli import main\nmain()\n"
-BY_NAME = ("fatektool", "pymodbus", "serial", "dulwich")
-LEFT_OUT = ("dulwich.tests", "tkinter", "pytest", "hypothesis", "numpy", "PIL", "IPython", "matplotlib")
+BY_NAME = ("serial.urlhandler",)
+"""Packages beside fatektool whose modules are imported by name; PyInstaller finds all others itself."""
+LEFT_OUT = ("markdown_it", "pygments", "setuptools", "tkinter")
+"""What dependencies can use, and fatektool does not."""
+SPEC = """
+from PyInstaller.utils.hooks import collect_submodules
+
+parts = Analysis(
+    [*{scripts!r}, {entry!r}],
+    pathex=[{root!r}],
+    datas=[({schemas!r}, "fatektool/schemas")],
+    hiddenimports=[*{modules!r}, *(name for package in {by_name!r} for name in collect_submodules(package))],
+    excludes={left_out!r},
+)
+pure = PYZ(parts.pure)
+for name, without in (("fatektool", {tries!r}), ("fatektool-try", ["entry"])):
+    if name == "fatektool" or {tries!r}:
+        scripts = [script for script in parts.scripts if script[0] not in without]
+        EXE(pure, scripts, parts.binaries, parts.datas, name=name, console=True, upx=False)
+"""
 
 
-def main(folder: str = "dist") -> None:
+def modules() -> list[str]:
+    """All modules of fatektool: its commands are imported by name."""
+    found = (path.relative_to(ROOT).with_suffix("") for path in (ROOT / "fatektool").rglob("*.py"))
+    return sorted(".".join(path.parts).removesuffix(".__init__") for path in found)
+
+
+def main(folder: str = "dist", *scripts: str) -> None:
     """Build it."""
     import PyInstaller.__main__
 
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as work:
-        entry = Path(work) / "entry.py"
+        entry, spec = Path(work) / "entry.py", Path(work) / "fatektool.spec"
         entry.write_text(ENTRY, encoding="utf-8")
-        words = ["--onefile", "--console", "--noconfirm", "--log-level", "INFO", "--name", "fatektool"]
-        words += ["--distpath", folder, "--workpath", f"{work}/build", "--specpath", work]
-        words += ["--paths", str(ROOT), "--add-data", f"{ROOT / 'fatektool' / 'schemas'}:fatektool/schemas"]
-        for name in BY_NAME:
-            words += ["--collect-submodules", name]
-        for name in LEFT_OUT:
-            words += ["--exclude-module", name]
-        PyInstaller.__main__.run([*words, str(entry)])
+        text = SPEC.format(
+            scripts=[str(Path(script).resolve()) for script in scripts],
+            tries=[Path(script).stem for script in scripts],
+            entry=str(entry),
+            root=str(ROOT),
+            schemas=str(ROOT / "fatektool" / "schemas"),
+            modules=modules(),
+            by_name=BY_NAME,
+            left_out=LEFT_OUT,
+        )
+        spec.write_text(text, encoding="utf-8")
+        folders = ["--distpath", folder, "--workpath", f"{work}/build"]
+        PyInstaller.__main__.run(["--noconfirm", "--log-level", "WARN", *folders, str(spec)])
     print(Path(folder) / "fatektool.exe")
 
 

@@ -21,7 +21,7 @@ import pytest
 from hypothesis import HealthCheck, is_hypothesis_test, settings
 
 from tests.compiling import import_from_the_end, keep_compiled
-from tests.night import AT_NIGHT
+from tests.night import AT_NIGHT, FEW, examples
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -38,6 +38,7 @@ _ALWAYS: dict[str, Any] = {
     "suppress_health_check": [HealthCheck.too_slow],
 }
 settings.register_profile("same", derandomize=True, max_examples=25, **_ALWAYS)
+settings.register_profile("few", derandomize=True, max_examples=examples(25), **_ALWAYS)
 settings.register_profile("random", derandomize=False, max_examples=100, **_ALWAYS)
 
 
@@ -56,7 +57,7 @@ def pytest_configure(config: pytest.Config) -> None:
     random = _looks_for_new_cases(config)
     if random:
         os.environ[AT_NIGHT] = "1"
-    settings.load_profile("random" if random else "same")
+    settings.load_profile("random" if random else "few" if os.environ.get(FEW) else "same")
     if random and config.option.hypothesis_seed is None:
         config.option.hypothesis_seed = os.environ.setdefault(_SEED, str(secrets.randbelow(1 << 32)))
 

@@ -13,11 +13,19 @@ import os
 import sys
 import tempfile
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
 
 from fatektool.cli import run
 from fatektool.cli.app import app
 
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
 DONE = 0
+CONTEXT = click.Context(app)
+HOME = Path.cwd()
 
 WITH_PLC = [
     ("status", 0),
@@ -50,6 +58,8 @@ WITHOUT = [
     ("listing press.json", 0),
     ("xref press.json", 0),
     ("diff press.json other.json", 1),
+    ("diff press.json other.json --report differences.html", 1),
+    ("listing press.json --report listing.html", 0),
     ("ports", 0),
     ("decode 0230313430433703", 0),
     ("encode 46 R12 3", 0),
@@ -60,8 +70,10 @@ WITHOUT = [
     ("fleet backup --dir backups", 0),
     ("fleet backup --history kept", 0),
     ("history log --history kept", 0),
+    ("history check --history kept", 0),
     ("schema status", 0),
     ("completion bash", 0),
+    ("completion powershell", 0),
     ("simulate --help", 0),
     ("help", 0),
     ("version", 0),
@@ -79,9 +91,19 @@ def outcome(words: list[str]) -> tuple[int, str]:
     return code, out.getvalue() + err.getvalue()
 
 
+def commands(group: click.Group = app, *before: str) -> Iterator[tuple[str, ...]]:
+    """All commands, those of groups too."""
+    for name in group.list_commands(CONTEXT):
+        command = group.get_command(CONTEXT, name)
+        yield (*before, name)
+        if isinstance(command, click.Group):
+            yield from commands(command, *before, name)
+
+
 def main(target: str, other: str, *options: str) -> int:
     """Run them all in a folder of their own."""
-    wrong, ran = 0, set[str]()
+    wrong, helps, ran = 0, 0, set[str]()
+    print(f"Python {sys.version} on {sys.platform}", flush=True)
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         os.chdir(folder)
         os.environ["FATEKTOOL_STATE_DIR"] = folder
@@ -97,9 +119,16 @@ def main(target: str, other: str, *options: str) -> int:
             print(f"{'WRONG' if fault else 'ok':5}  exit {code:3}  fatektool {' '.join(words)}", flush=True)
             if fault:
                 print(said, flush=True)
-        os.chdir(Path(__file__).parent)
+        for words in commands():
+            code, said = outcome([*words, "--help"])
+            helps += 1
+            if code != DONE or "Usage: fatektool" not in said:
+                wrong += 1
+                print(f"WRONG  exit {code:3}  fatektool {' '.join(words)} --help\n{said}", flush=True)
+        os.chdir(HOME)
     missing = set(app.subcommands) - ran
-    print(f"{len(WITH_PLC) + len(WITHOUT)} commands, {wrong} wrong; not run: {sorted(missing) or 'none'}")
+    count = len(WITH_PLC) + len(WITHOUT)
+    print(f"{count} commands and the help of {helps}, {wrong} wrong; not run: {sorted(missing) or 'none'}")
     return 1 if wrong or missing else 0
 
 

@@ -16,7 +16,7 @@ from fatektool.protocol.elements import Element
 from fatektool.simulator.build import build_simulation
 from fatektool.simulator.listen.servers import Server, running
 from tests.guard import GUARD_S
-from tests.platforms import not_in_wine
+from tests.platforms import symbolic_links
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -147,7 +147,7 @@ def test_a_new_sim_file_has_the_station_that_was_asked_for(tmp_path: Path) -> No
         plc.brief_status()
 
 
-@not_in_wine("symbolic links are not followed")
+@symbolic_links
 def test_two_at_once_to_one_sim_file(tmp_path: Path) -> None:
     file = tmp_path / "plc.json"
     link = tmp_path / "link.json"
@@ -176,7 +176,7 @@ def test_a_sim_file_that_cannot_be_written(tmp_path: Path) -> None:
         assert caught.value.exit_code != 70
 
 
-@pytest.mark.skipif(os.name != "posix", reason="POSIX links")
+@symbolic_links
 def test_a_sim_file_that_is_a_link_to_itself(tmp_path: Path) -> None:
     (tmp_path / "plc.json").symlink_to(tmp_path / "plc.json")
     with pytest.raises(DataError, match=r"plc\.json"):

@@ -13,7 +13,6 @@ from fatektool.files.atomic import read_bounded, require_place, write_whole
 from fatektool.files.portable_name import device_of_name, fault_of_name, is_portable_name
 from fatektool.transport import target as target_module
 from fatektool.transport.serial_line import url
-from fatektool.transport.serial_line.windows import port_name
 from fatektool.transport.target import Target
 from tests.rows import each
 
@@ -157,9 +156,11 @@ def test_all_names_of_a_port_are_one_line(name: str) -> None:
     assert url.line_name(Target.parse(name).path) == "COM1"
 
 
-@each(("device", "name"), [("COM12", "COM12"), (r"\\.\CNCA0", r"\\.\CNCA0"), ("cnca0", "CNCA0")])
-def test_names_of_ports_that_are_kept(device: str, name: str) -> None:
-    assert port_name(device) == name
+@pytest.mark.usefixtures("_windows")
+@each(("device", "line"), [("com12:", "COM12"), (r"\\.\cnca0", r"\\.\CNCA0"), ("cnca0", "CNCA0")])
+def test_names_of_other_ports_are_kept_but_for_their_line(device: str, line: str) -> None:
+    assert url.line_name(device) == line
+    assert url.opened_name(device) == (line if line == "COM12" else device)
 
 
 @pytest.mark.skipif(portable_name.WINDOWS, reason="on Windows it opens the port")

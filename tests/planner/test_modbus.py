@@ -78,6 +78,7 @@ def test_any_set(elements: list[Element], codec: Codec, turnaround: float) -> No
     compare(elements, codec, turnaround)
 
 
+@pytest.mark.arithmetic
 @codecs
 @pytest.mark.parametrize("seed", seeds(1, 3))
 @pytest.mark.parametrize(
@@ -92,6 +93,7 @@ def test_where_requests_are_full(codec: Codec, seed: int, sizes: tuple[int, int]
         compare(elements, Limited(codec, caps, caps), random.choice(TURNAROUNDS), caps, caps)
 
 
+@pytest.mark.arithmetic
 @pytest.mark.parametrize("seed", seeds(1, 2))
 def test_larger_sets(seed: int) -> None:
     random = Random(seed)  # noqa: S311

@@ -58,6 +58,7 @@ def test_any_set(elements: list[Element], codec: str, turnaround: float) -> None
     compare(elements, CODECS[codec], turnaround)
 
 
+@pytest.mark.arithmetic
 @codecs
 @pytest.mark.parametrize("seed", seeds(1, 3))
 @pytest.mark.parametrize("caps", [(4, 40, 4, 2), (8, 64, 6, 4)], ids=["4 words", "8 words"])
@@ -79,6 +80,7 @@ def test_where_requests_are_full(codec: Codec, seed: int, caps: tuple[int, int, 
         ), f"write {' '.join(map(str, written))} at {turnaround}"
 
 
+@pytest.mark.arithmetic
 @pytest.mark.parametrize("seed", seeds(1, 4))
 def test_larger_sets(seed: int) -> None:
     random = Random(seed)  # noqa: S311

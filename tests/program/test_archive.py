@@ -371,6 +371,6 @@ def test_a_huge_file_is_not_read_whole(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["missing.json", ".", "missing/press.json", "x" * 300, "nul\0"])
 def test_a_file_that_cannot_be_read(tmp_path: Path, name: str) -> None:
-    with pytest.raises(FatektoolError, match="cannot read") as caught:
+    with pytest.raises(FatektoolError, match=r"cannot read|a file name cannot contain") as caught:
         load_backup(tmp_path / name)
     assert caught.value.exit_code == 2

@@ -16,7 +16,7 @@ from fatektool.simulator.models import MODELS
 from fatektool.simulator.plc import SimulatedPlc
 from fatektool.simulator.program.facon_program import demonstration_program
 from fatektool.simulator.state import StateFile, dump_state, parse_state
-from tests.platforms import not_in_wine
+from tests.platforms import symbolic_links
 from tests.simulator.wire import frame, sent
 
 if TYPE_CHECKING:
@@ -156,7 +156,7 @@ def test_a_page_is_in_the_file_when_it_is_acknowledged(tmp_path: Path) -> None:
     assert pages[1:] == demonstration_program(13184)[1:]
 
 
-@not_in_wine("symbolic links are not shown as such")
+@symbolic_links
 def test_a_link_to_a_state_file_stays_one(tmp_path: Path) -> None:
     real, link = tmp_path / "real.json", tmp_path / "link.json"
     build_simulation(state=real)

@@ -16,11 +16,11 @@ import pytest
 from fatektool.errors import PortBusy, UsageError
 from fatektool.transport import lock as lock_module
 from fatektool.transport.lock import PortLock
+from tests.platforms import posix, symbolic_links
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-posix = pytest.mark.skipif(os.name != "posix", reason="POSIX files and users")
 as_root = hasattr(os, "geteuid") and os.geteuid() == 0
 RESOURCE = "/dev/ttyUSB0"
 HOLDER = """
@@ -265,7 +265,7 @@ def test_resources_that_read_alike_have_two_locks() -> None:
     assert PortLock("/dev/a-b", 0).path != PortLock("/dev/a/b", 0).path
 
 
-@posix
+@posix("modes of files")
 def test_the_file_is_for_all_users_to_lock() -> None:
     mask = os.umask(0o077)
     try:
@@ -277,7 +277,7 @@ def test_the_file_is_for_all_users_to_lock() -> None:
         os.umask(mask)
 
 
-@posix
+@posix("modes of files; on Windows they are not set")
 def test_a_file_that_may_only_be_read_can_be_locked(monkeypatch: pytest.MonkeyPatch) -> None:
     lock = PortLock(RESOURCE, 0)
     Path(lock.path).write_text("4711\n")
@@ -300,7 +300,6 @@ def as_another_user(really_open: object) -> object:
     return open_to_read
 
 
-@posix
 @pytest.mark.parametrize("place", ["nowhere", "file", "nowhere/deep"])
 def test_a_folder_that_cannot_be_used_is_one_clear_line(
     place: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -316,7 +315,7 @@ def test_a_folder_that_cannot_be_used_is_one_clear_line(
     lock.release()
 
 
-@posix
+@posix("modes of folders")
 @pytest.mark.skipif(as_root, reason="root may write everywhere")
 def test_a_folder_without_the_right_to_write(lock_folder: Path) -> None:
     lock_folder.chmod(0o555)
@@ -324,8 +323,14 @@ def test_a_folder_without_the_right_to_write(lock_folder: Path) -> None:
         PortLock(RESOURCE, 0).acquire()
 
 
-@posix
-@pytest.mark.parametrize("trap", ["dangling", "file", "folder"])
+@pytest.mark.parametrize(
+    "trap",
+    [
+        pytest.param("dangling", marks=symbolic_links),
+        pytest.param("file", marks=symbolic_links),
+        "folder",
+    ],
+)
 def test_a_trap_in_a_shared_folder_is_not_stepped_into(trap: str, tmp_path: Path) -> None:
     lock = PortLock(RESOURCE, 0)
     victim = tmp_path / "victim"
@@ -340,7 +345,6 @@ def test_a_trap_in_a_shared_folder_is_not_stepped_into(trap: str, tmp_path: Path
     assert not victim.exists() or victim.read_text() == "precious"
 
 
-@posix
 def test_a_child_process_does_not_inherit_the_lock() -> None:
     lock = PortLock(RESOURCE, 0)
     lock.acquire()
@@ -373,7 +377,7 @@ def test_one_place_for_all_users_of_windows(monkeypatch: pytest.MonkeyPatch, tmp
         assert Path(lock_module.lock_folder()) == tmp_path / "temporary"
 
 
-@posix
+@posix("modes of folders")
 def test_one_place_for_all_users(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """A folder into which this user may write and others may not is none, though it comes first."""
     monkeypatch.setenv("FATEKTOOL_LOCK_DIR", "")

@@ -16,7 +16,7 @@ from fatektool.transport.lock import PortLock
 from fatektool.transport.open import open_transport
 from fatektool.transport.sockets import resolve
 from fatektool.transport.target import Target
-from tests.platforms import not_in_wine
+from tests.platforms import not_in_wine, posix
 from tests.transport.media import LINE, listening, needs_pty
 
 if TYPE_CHECKING:
@@ -75,7 +75,6 @@ def test_no_such_port(tmp_path: Path) -> None:
     assert "fatektool ports" in str(error.hint)
 
 
-@pytest.mark.skipif(os.name != "posix", reason="elsewhere a file is no port by its name")
 def test_a_plain_file_is_no_port(tmp_path: Path) -> None:
     file = tmp_path / "ttyUSB0"
     file.write_text("mine")
@@ -84,17 +83,18 @@ def test_a_plain_file_is_no_port(tmp_path: Path) -> None:
     assert file.read_text() == "mine"
 
 
-@pytest.mark.skipif(os.name != "posix", reason="elsewhere a folder is no port by its name")
 def test_a_folder_is_no_port(tmp_path: Path) -> None:
-    assert "directory" in refusal(str(tmp_path)).message
+    message = refusal(str(tmp_path)).message
+    assert message.startswith(str(tmp_path))
+    assert "is a folder, not a serial port" in message or "directory" in message
 
 
-@pytest.mark.skipif(os.name != "posix", reason="no such device elsewhere")
+@posix("on Windows the name is refused: tests/files/test_device_names.py")
 def test_a_device_that_is_no_terminal() -> None:
     assert refusal(os.devnull).message.startswith(f"{os.devnull}: cannot be used as a serial port")
 
 
-@pytest.mark.skipif(os.name != "posix", reason="POSIX permissions")
+@posix("modes of files")
 @pytest.mark.skipif(as_root, reason="root may open everything")
 def test_no_right_to_the_port(tmp_path: Path) -> None:
     port = tmp_path / "ttyUSB0"

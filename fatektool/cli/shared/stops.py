@@ -4,7 +4,7 @@
 
     SIGTERM            kill, systemd, a shutdown
     SIGHUP             a closed terminal or SSH session; not under nohup, which has it ignored
-    SIGBREAK           Ctrl-Break on Windows
+    Ctrl-Break         on Windows
     console closed     the window is closed, or the user logs off, on Windows
 """
 
@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Final
 if TYPE_CHECKING:
     from types import FrameType
 
-_SIGNALS: Final = ("SIGTERM", "SIGHUP", "SIGBREAK")
+_SIGNALS: Final = ("SIGTERM", "SIGHUP")
 
 
 def end_cleanly() -> None:

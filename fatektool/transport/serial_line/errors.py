@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import os
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import FatektoolError, LineError, PortBusy, TransportClosed, UsageError
@@ -58,6 +59,8 @@ def _windows_error(target: str, settings: LineSettings, error: Exception) -> Lin
     match found.kind:
         case WindowsErrorKind.MISSING:
             return LineError(f"{target}: no such port", hint=next_step(target))
+        case WindowsErrorKind.BUSY if os.path.isdir(target):  # noqa: PTH112  # pathlib is loaded later
+            return LineError(f"{target}: is a folder, not a serial port", hint=next_step(target))
         case WindowsErrorKind.BUSY:
             return PortBusy(
                 f"{target}: another program has the port open ({found})",

@@ -96,7 +96,7 @@ def line_name(target: str) -> str:
         device = None
     if device is None:
         return target.upper()
-    return port_name(device) if WINDOWS else os.path.realpath(device)  # COM3 is not a path
+    return port_name(device).upper() if WINDOWS else os.path.realpath(device)  # COM3 is not a path
 
 
 def opened_name(target: str) -> str:

@@ -85,7 +85,7 @@ ERRORS: Final = {each.number: each for each in _TABLE}
 def port_name(device: str) -> str:
     r"""One name for all names of a port: ``COM1`` for ``\\.\com1`` and ``COM1:``."""
     found = _PORT.fullmatch(device)
-    return (found[1] if found else device).upper()
+    return found[1].upper() if found else device
 
 
 def require_port(target: str, device: str) -> None:

@@ -73,6 +73,7 @@ def test_one_plc_into_another(seed: int) -> None:
     assert not result.not_taken
 
 
+@pytest.mark.arithmetic
 @pytest.mark.parametrize("model", ["fbs-20mc", "fbe-28mc"])
 def test_whole_models(model: str) -> None:
     first, spare = simulated(model=model), simulated(model=model, program_seed=2)
@@ -215,6 +216,7 @@ def requests_of(wanted: Backup, seed: int) -> int:
     return count
 
 
+@pytest.mark.arithmetic
 @pytest.mark.parametrize("answered", [True, False])
 def test_killed_at_every_request_the_same_again_completes_it(answered: bool) -> None:
     wanted = file_of(filled(1))
@@ -238,6 +240,7 @@ def test_killed_at_every_request_the_same_again_completes_it(answered: bool) -> 
         assert equal(spare, wanted), end
 
 
+@pytest.mark.arithmetic
 def test_cut_at_every_request_says_what_the_plc_holds() -> None:
     wanted = file_of(filled(1))
     total = requests_of(wanted, 2)

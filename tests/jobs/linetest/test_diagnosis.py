@@ -14,6 +14,7 @@ from fatektool.jobs.linetest.loopback.run import run_loopback
 from fatektool.protocol.fatek.facon.codec import FACON
 from fatektool.transport.base import LineSettings
 from tests.exchange.peer import Rules, Script, frame, linked, soon
+from tests.night import seeds
 from tests.rigs import simulated
 
 
@@ -58,7 +59,7 @@ def test_a_rule_finds_what_it_is_for_and_no_other_does(
         assert finding.advice
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", seeds(6, 6))
 def test_errors_that_do_not_grow_are_not_said_to(seed: int) -> None:
     found = findings(simulated(baud=9600, faults=["flip=0.15"], seed=seed).plc)
     assert "errors-grow-with-size" not in found

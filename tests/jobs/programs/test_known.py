@@ -16,6 +16,7 @@ from fatektool.jobs.programs.backup import backup
 from fatektool.jobs.programs.known import KnownPages, after_an_equal, apart, first_known, neighbours
 from fatektool.jobs.programs.restore import RestoreOptions, plan_restore
 from fatektool.program.archive import Backup, Proof
+from tests.night import seeds
 from tests.platforms import posix
 from tests.program.samples import backup as backup_of
 from tests.program.samples import changed, program
@@ -223,7 +224,7 @@ def test_a_page_that_differs_in_each_reading_is_in_no_backup() -> None:
 @pytest.mark.parametrize(
     "fault", ["late=0.2", "duplicate=0.2", "drop=0.2", "flip=0.2", "noise=0.2", "slow=0.2"]
 )
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", seeds(6, 6))
 def test_a_bad_line(fault: str, seed: int) -> None:
     """Late answers, answers twice, lost and damaged ones: right, or refused."""
     image = program(400)

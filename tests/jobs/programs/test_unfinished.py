@@ -18,6 +18,7 @@ from fatektool.errors import (
 )
 from fatektool.jobs.programs.restore import RestoreOptions, RestoreResult, restore
 from fatektool.program.archive import load_backup
+from tests.night import seeds
 from tests.program.samples import backup, changed, program
 from tests.rigs import READ_PAGE, RUN_STOP, WRITE_PAGE, Bench, Seen
 
@@ -510,7 +511,7 @@ def test_whatever_else_fails_the_plc_is_not_left_without_a_word(
 FAULTS = ["drop", "flip", "truncate", "noise", "duplicate", "late", "slow", "wrong-station", "lying-write"]
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", seeds(6, 6))
 @pytest.mark.parametrize("p", [0.05, 0.3])
 @pytest.mark.parametrize("fault", FAULTS)
 def test_over_a_bad_line_it_is_done_or_said_how_far(tmp_path: Path, fault: str, p: float, seed: int) -> None:

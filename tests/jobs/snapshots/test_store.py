@@ -24,6 +24,7 @@ from fatektool.jobs.snapshots.store import Keep, append_line, save_dated
 from fatektool.transport.lock import PortLock
 from tests.cli.running import check, process, started
 from tests.plant import error_of, recorded, snapshot_of
+from tests.platforms import posix
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
 
 TAKEN = snapshot_of("R0:3", "Y0")
 NOW = datetime(2026, 11, 22, 12, tzinfo=UTC)
-posix = pytest.mark.skipif(os.name == "nt", reason="modes and signals of POSIX")
 
 
 def at(time: str, station: int = 1) -> Snapshot:
@@ -214,7 +214,7 @@ def test_append(place: Path) -> None:
     assert [line["time"][8:10] for line in lines(path)] == ["22"]
 
 
-@posix
+@posix("modes of files")
 def test_append_follows_a_link_and_keeps_the_mode(place: Path) -> None:
     real, link = place / "real.ndjson", place / "link.ndjson"
     link.symlink_to(real)
@@ -285,7 +285,7 @@ def test_a_full_disk_takes_the_half_line_back(
     assert len(lines(path)) == 2
 
 
-@posix
+@posix("devices are files")
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
 def test_standard_output_on_a_full_disk(plant: Plant) -> None:
     done = process("snapshot", "R0", "-p", plant.target, redirect="> /dev/full")
@@ -326,7 +326,6 @@ def test_processes_that_append_at_once(place: Path) -> None:
     assert {part["target"] for part in found} == set(targets)
 
 
-@posix
 def test_killed_while_appending(place: Path) -> None:
     """Whenever the process dies, the file is lines, and the last one is whole or can be told."""
     path = place / "a.ndjson"
