@@ -40,6 +40,9 @@ def run_check(
         limit: ends the check.
         shared: keeps the line open for the next PLC on it.
         progress: called for each page.
+
+    Raises:
+        FatektoolError: the user ended it.
     """
     return check_plc(
         plan,
@@ -47,6 +50,7 @@ def run_check(
         unfinished=partial(unfinished, connection.address.target, connection.address.station),
         now=datetime.now(UTC),
         progress=progress,
+        is_stopped=lambda: limit.stopped,
     )
 
 

@@ -73,6 +73,7 @@ def check_plc(
     unfinished: Callable[[], Iterable[Unfinished]],
     now: datetime,
     progress: Progress = ignore,
+    is_stopped: Callable[[], bool] = lambda: False,
 ) -> CheckResult:
     """Check one PLC, and its backup whether the PLC answers or not.
 
@@ -82,12 +83,18 @@ def check_plc(
         unfinished: gives the writes into this PLC that did not complete.
         now: the present.
         progress: called for each page.
+        is_stopped: True if the user ended the check: then an error is no fact about the PLC.
+
+    Raises:
+        FatektoolError: ``is_stopped``, in the middle of the check.
     """
     found = CheckResult()
     try:
         with connect() as plc:
             _check_plc(plc, found, expect=plan.expect, reference=plan.reference, progress=progress)
     except FatektoolError as error:
+        if is_stopped():
+            raise
         found.fail(error)
     for write in unfinished():
         words = f"{write.job} UNFINISHED since {write.time}"

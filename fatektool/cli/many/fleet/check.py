@@ -118,7 +118,8 @@ def _lines(
         if names:
             more = f" and {len(names) - _MOST_NAMED} more" if len(names) > _MOST_NAMED else ""
             parts.append(f"{len(names)} {state.name}: {', '.join(names[:_MOST_NAMED])}{more}")
-    words = "; ".join([f"{counts[State.OK]} of {len(states)} PLCs OK", *parts, *lost])
+    cut = ["interrupted"] if document["interrupted"] else []
+    words = "; ".join([f"{counts[State.OK]} of {len(states)} PLCs OK", *parts, *cut, *lost])
     figures = {state.name.lower(): str(counts[state]) for state in State}
     yield plugin_line(found, words, figures | {"duration": f"{document['duration_s']}s;;;0"})
     for plc in document["plcs"]:

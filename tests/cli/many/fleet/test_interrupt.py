@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from fatektool.program.archive import load_backup
+from fatektool.program.archive import load_backup, save_backup
 from tests.cli.many.fleet.gateway import plcs_of
 from tests.cli.running import OLD, check, served, started
 from tests.cli.terminal import Terminal
 from tests.guard import GUARD_S
-from tests.program.samples import program
+from tests.program.samples import backup, program
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -72,6 +72,69 @@ def test_an_interrupt_tells_what_is_done(number: signal.Signals, *, as_json: boo
         assert out == "quick   done      first backup, FB30, 400 words\n"
     assert [path.name for path in Path("backups").iterdir()] == ["quick.json"]
     assert load_backup(Path("backups/quick.json")).program == OLD
+
+
+def compare_slow() -> None:
+    """Let a check of the slow PLC read its program."""
+    save_backup(backup(LARGE), Path("large.json"))
+    tables = Path("fatek.toml").read_text().replace("[plc.slow]", '[plc.slow]\nreference = "large.json"')
+    Path("fatek.toml").write_text(f'[defaults]\nexpect = "any"\n{tables}')
+
+
+@pytest.mark.parametrize("as_json", [False, True], ids=["words", "json"])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_check_is_unknown(number: signal.Signals, *, as_json: bool) -> None:
+    """A plugin has no 130."""
+    with slow_and_quick() as asked:
+        compare_slow()
+        words = ["--select", "slow", "--select", "behind", *(["--json"] if as_json else [])]
+        command = started("fleet", "check", *words)
+        assert asked.wait(GUARD_S)
+        command.send_signal(number)
+        out, err = command.communicate()
+    assert (command.returncode, err) == (3, "")
+    if as_json:
+        document = json.loads(out)
+        check(document, "fleet")
+        assert (document["interrupted"], document["state"]) == (True, "UNKNOWN")
+        assert document["summary"] == {"total": 2, "ok": 0, "failed": 0, "changed": 0, "not_done": 2}
+        assert {plc["exit_code"] for plc in document["plcs"]} == {130}
+        return
+    line, *others = out.splitlines()
+    told, figures = line.split(" | ")
+    assert told == "FATEK UNKNOWN - 0 of 2 PLCs OK; 2 UNKNOWN: slow, behind; interrupted"
+    assert figures.startswith("ok=0 warning=0 critical=0 unknown=2 ")
+    assert others == [f"UNKNOWN - {name}: interrupted before it was done" for name in ("slow", "behind")]
+
+
+def test_an_interrupted_check_keeps_what_was_found_and_calls_nobody_for_the_rest() -> None:
+    """A PLC that was not checked to its end has no fault."""
+    with slow_and_quick() as asked:
+        compare_slow()
+        text = Path("fatek.toml").read_text().replace("[plc.quick]", '[plc.quick]\nexpect = "run"')
+        Path("fatek.toml").write_text(text)
+        alarm = "sh -c 'touch $FATEK_NAME.called'"
+        command = started("fleet", "check", "--on-failure", alarm)
+        assert asked.wait(GUARD_S)
+        while not Path("quick.called").exists():
+            assert command.poll() is None
+        command.send_signal(signal.SIGINT)
+        out, err = command.communicate()
+    assert (command.returncode, err) == (2, "")
+    told = "FATEK CRITICAL - 0 of 3 PLCs OK; 1 CRITICAL: quick; 2 UNKNOWN: slow, behind; interrupted"
+    assert out.split(" | ")[0] == told
+    assert [path.name for path in Path().glob("*.called")] == ["quick.called"]
+
+
+def test_an_interrupted_check_of_one_plc() -> None:
+    with slow_and_quick() as asked:
+        save_backup(backup(LARGE), Path("large.json"))
+        words = ["-p", "slow", "--reference", "large.json", "--expect", "any"]
+        command = started("check", *words)
+        assert asked.wait(GUARD_S)
+        command.send_signal(signal.SIGINT)
+        out, err = command.communicate()
+    assert (command.returncode, out, err) == (3, "FATEK UNKNOWN - interrupted\n", "")
 
 
 def test_a_kill_leaves_no_half_file() -> None:
