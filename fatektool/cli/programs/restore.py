@@ -219,8 +219,7 @@ def _carry_out(
 
     wanted = None if plan.data is None else plan.data.wanted
     writing = offer.writing
-    earlier = None if wanted is None else writing.earlier_copy
-    safety = SafetyBackup(plan.present, plan.wanted, file, writing.folder, wanted, earlier)
+    safety = SafetyBackup(plan.present, plan.wanted, file, writing.folder, wanted, writing.earlier_copy)
     with offer.carry_out() as mark:
         result = carry_out(plc, plan, safety, agree, progress=bar.update, mark=mark)
     writing.forget()

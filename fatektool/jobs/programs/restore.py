@@ -254,8 +254,7 @@ def carry_out(
         RestoreIncomplete: the PLC's program is neither the previous nor the new one.
         UsageError: the safety backup cannot be written, or the user does not agree; nothing was written.
         DataError: this is not the PLC that the plan was made of; nothing was written.
-        PlcError: nothing was changed; or all was, and RUN is refused; or it was rolled back.
-        LineError: the same, for want of an answer.
+        PlcError, LineError: nothing was changed; or all was, and RUN is refused; or it was rolled back.
     """
     running = plan.running
     warnings = plan.warnings
@@ -263,9 +262,11 @@ def carry_out(
     if plan.changes:
         rewrite = Rewrite(plc, plan.wanted, plan.present, plan.pages, running=running)
         data = None if plan.data is None else DataRewrite(plc, plan.data)
+        safety = safety or SafetyBackup(plan.present, plan.wanted, Path(), None)
+        warnings += safety.doubts
         whole = WritePlan(
             (rewrite,) if data is None else (rewrite, data),
-            safety or SafetyBackup(plan.present, plan.wanted, Path(), None),
+            safety,
             "the restore did not complete",
             rollback=plan.options.rollback,
         )
@@ -312,6 +313,7 @@ def restore(
     options: RestoreOptions = RestoreOptions(),
     safety_folder: Path | str | None = None,
     save_previous: bool = True,
+    earlier: Path | str | None = None,
     progress: Progress = ignore,
 ) -> RestoreResult:
     """Restore a program: plan, safety backup, question, write, read back.
@@ -325,14 +327,13 @@ def restore(
         options: what the restore may do.
         safety_folder: where the safety backup goes; None for beside ``file``.
         save_previous: False for no safety backup: the restore cannot be undone.
+        earlier: the safety backup of an earlier call that raised ``RestoreIncomplete``, to be used again.
         progress: called for each page.
 
     Raises:
         UsageError: ``confirm`` said no, or the safety backup cannot be written; nothing was written.
         RestoreIncomplete: the PLC's program is neither the previous nor the new one.
-        DataError: see ``plan_restore``.
-        PlcError: see ``plan_restore`` and ``carry_out``.
-        LineError: see ``plan_restore`` and ``carry_out``.
+        DataError, PlcError, LineError: see ``plan_restore`` and ``carry_out``.
     """
     file = Path(file)
     folder = Path(safety_folder or file.parent) if save_previous else None
@@ -344,5 +345,6 @@ def restore(
             raise UsageError("Aborted. Nothing was written.")
 
     wanted = None if plan.data is None else plan.data.wanted
-    safety = SafetyBackup(plan.present, plan.wanted, file, folder, wanted)
+    former = None if earlier is None or folder is None else Path(earlier)
+    safety = SafetyBackup(plan.present, plan.wanted, file, folder, wanted, former)
     return carry_out(plc, plan, safety, agree, progress=progress)

@@ -1,8 +1,9 @@
 """The safety backup: the program that was in the PLC before a restore.
 
 A restore that was killed half way leaves a program that is part previous, part new. When the same restore is
-run again, a backup of *that* would be no use: so the safety backup of the first run is looked for, the one
-from whose pages and FILE's all present pages come, and is used again.
+run again, a backup of *that* would be no use: so the safety backup of the first run, which its record names,
+is used again, if all present pages come from it and FILE. Without a record the present program is saved,
+whatever it is, and an older safety backup that fits is named.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ class SafetyBackup:
         file: where that came from.
         folder: where safety backups go; None for none.
         data: the data that are to be restored; None if they are not.
-        earlier: the copy that an unfinished restore of data made, by its record; None if there is none.
+        earlier: the copy that an unfinished restore made, by its record; None if there is none.
     """
 
     key: ClassVar[str] = "safety_backup"
@@ -56,25 +57,38 @@ class SafetyBackup:
         return "program" if self.data is None else "program and data"
 
     def find(self, folder: Path) -> Path | None:
-        """The safety backup of an unfinished restore of the same file, if the PLC has part of it."""
-        if self.data is not None:
-            return self._find_by_record(self.data)
-        return find_safety_backup(
-            self.present.program, self.wanted, self.present.source.station, self.file, folder
-        )
+        """The earlier copy, if all that the PLC has is of that copy or of the file.
 
-    def _find_by_record(self, wanted: DataPart) -> Path | None:
-        """The copy that the record names, if all that the PLC has is of that copy or of the file."""
-        there = self.present.data
+        The pages alone do not prove that a restore was interrupted: of three versions of a program the middle
+        one may well have the pages of the first and the last.
+        """
+        if self.earlier is None:
+            return None
         try:
-            old = None if self.earlier is None else load_backup(self.earlier)
+            old = load_backup(self.earlier)
         except FatektoolError:
             return None  # a damaged copy is of no use, and no reason to stop
-        if old is None or old.data is None or there is None:
-            return None
         if not _is_between(self.present.program, old.program, self.wanted):
             return None
-        return self.earlier if are_data_between(there, old.data, wanted) else None
+        there = self.present.data
+        if self.data is not None and (
+            old.data is None or there is None or not are_data_between(there, old.data, self.data)
+        ):
+            return None
+        beside = folder / self.earlier.name  # as the user names the folder
+        return beside if beside.exists() and beside.samefile(self.earlier) else self.earlier
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """What to say of a program that looks like half a restore of the file, without a record of one."""
+        if self.folder is None or self.earlier is not None:
+            return ()
+        station = self.present.source.station
+        found = find_safety_backup(self.present.program, self.wanted, station, self.file, self.folder)
+        if found is None:
+            return ()
+        then = "if a restore was interrupted, the program before it is in that file"
+        return (f"the PLC had pages of FILE and pages of {found}: {then}",)
 
     def save(self, folder: Path) -> Path:
         """Write a new one; it is on disk when this returns.
@@ -104,7 +118,7 @@ def save_safety_backup(backup: Backup, file: Path, folder: Path) -> Path:
 def find_safety_backup(
     present: Program, wanted: Program, station: int, file: Path, folder: Path
 ) -> Path | None:
-    """The safety backup of an unfinished restore of the same file, if the PLC has part of it.
+    """The safety backup of what looks like half a restore of the same file.
 
     Args:
         present: the program in the PLC.

@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from fatektool.jobs.programs.safety import find_safety_backup, save_safety_backup
+from fatektool.jobs.programs.restore import RestoreResult, restore
+from fatektool.jobs.programs.safety import SafetyBackup, find_safety_backup, save_safety_backup
 from fatektool.program.archive import load_backup, save_backup
 from fatektool.program.image import Program
 from tests.program.samples import backup, program
+from tests.rigs import Bench
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -50,6 +52,38 @@ def test_what_is_no_half_has_no_way_back(tmp_path: Path) -> None:
     assert find(tmp_path, half(1), station=2) is None
     assert find(tmp_path, half(1), file=tmp_path / "door.json") is None
     assert find(tmp_path, half(1), folder=tmp_path / "missing") is None
+
+
+@pytest.mark.parametrize("new", [(1,), (1, 2, 3)])
+def test_the_copy_of_a_recorded_restore_is_used_again(tmp_path: Path, new: tuple[int, ...]) -> None:
+    mine = save_safety_backup(backup(OLD), tmp_path / "press.json", tmp_path)
+    again = SafetyBackup(backup(half(*new)), NEW, tmp_path / "press.json", tmp_path, earlier=mine)
+    assert again.find(tmp_path) == mine
+    assert again.doubts == ()
+    elsewhere = replace(again, present=backup(program(400, seed=3)))
+    assert elsewhere.find(tmp_path) is None  # another PLC, or another program
+    assert replace(again, earlier=tmp_path / "missing.json").find(tmp_path) is None
+
+
+def test_a_version_between_two_others_is_no_half_restore(tmp_path: Path) -> None:
+    """Of three versions the middle one has only pages of the first and the last: it is saved all the same."""
+    first, middle, last = OLD, half(1), half(1, 6)
+    bench, file = Bench(first), tmp_path / "press.json"
+
+    def put(wanted: Program) -> RestoreResult:
+        return restore(bench.plc, backup(wanted), file, confirm=lambda *_: True)
+
+    assert put(last).warnings == ()
+    bench.device.pages[:] = middle.pages  # by the vendor's program
+    result = put(last)
+    assert bench.pages == last.pages
+    assert result.safety_backup is not None
+    assert load_backup(result.safety_backup).program == middle
+    (oldest,) = {*map(str, tmp_path.iterdir())} - {result.safety_backup}
+    (warning,) = result.warnings
+    assert warning.startswith(
+        f"the PLC had pages of FILE and pages of {oldest}: if a restore was interrupted"
+    )
 
 
 def test_safety_backups_never_replace_one_another(tmp_path: Path) -> None:
