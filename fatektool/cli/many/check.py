@@ -12,7 +12,7 @@ from fatektool.cli.many.outcome import Outcome
 from fatektool.cli.many.plugin import PluginCommand, plugin_line
 from fatektool.cli.many.run_check import check_result, found_document, run_check
 from fatektool.cli.shared.connection_options import connection_options
-from fatektool.cli.shared.options import PATH, SecondsType
+from fatektool.cli.shared.options import PATH, deadline_option
 from fatektool.cli.shared.pairs import apart, together
 from fatektool.errors import UsageError
 from fatektool.inventory.values import EXPECTATIONS
@@ -47,14 +47,7 @@ if TYPE_CHECKING:
 @click.option("--no-reference", is_flag=True, help="Do not compare the program, which takes time.")
 @click.option("--backup", type=PATH, metavar="BACKUP", help="The last backup, checked too.")
 @click.option("--max-age", metavar="AGE", help="Maximum age of the backup: 36h, 7d.")
-@click.option(
-    "--deadline",
-    type=SecondsType(0, 86400, above=True),
-    default=600.0,
-    show_default=True,
-    metavar="S",
-    help="Time limit.",
-)
+@deadline_option(600.0, "Time limit.")
 @alarm_options(changes=True, place_first=False)
 @connection_options
 def check_command(

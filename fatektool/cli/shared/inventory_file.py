@@ -61,14 +61,25 @@ def complete_names(named: Path | None, incomplete: str) -> list[CompletionItem]:
     return _beginning(_names(_plcs(named)), incomplete)
 
 
-def complete_selection(named: Path | None, incomplete: str) -> list[CompletionItem]:
-    """The same, and tags with the names of their PLCs."""
-    plcs = _plcs(named)
+def complete_selection(context: click.Context, _: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    """The same of the inventory of a command, and tags with the names of their PLCs."""
+    plcs = _plcs(context.params.get("inventory"))
     tags: dict[str, list[str]] = {}
     for entry in plcs:
         for tag in entry.tags:
             tags.setdefault(tag, []).append(entry.name)
     return _beginning({tag: f"tag of {', '.join(of)}" for tag, of in tags.items()} | _names(plcs), incomplete)
+
+
+select_option = click.option(
+    "--select",
+    "words",
+    multiple=True,
+    metavar="NAME|TAG|GLOB",
+    shell_complete=complete_selection,
+    help="Only these PLCs; repeat for more.  [default: all]",
+)
+"""For a command of many PLCs; it gets ``words``, for ``fatektool.inventory.select``."""
 
 
 def _names(plcs: Iterable[PlcEntry]) -> dict[str, str]:

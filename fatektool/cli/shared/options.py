@@ -159,6 +159,18 @@ class Several(click.ParamType):  # type: ignore[type-arg]  # as above
         return tuple(self._each.convert(part.strip(), param, ctx) for part in value.split(","))
 
 
+def deadline_option(default_s: float, words: str) -> Callable[[F], F]:
+    """``--deadline``, after which a check or a turn ends; the command gets ``deadline``."""
+    return click.option(
+        "--deadline",
+        type=SecondsType(0, 86400, above=True),
+        default=default_s,
+        show_default=True,
+        metavar="S",
+        help=words,
+    )
+
+
 def voice_options(function: F) -> F:
     """``--json``, ``-q``, ``-v``; the command gets ``voice``."""
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 import json
 import time
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import click
 
 from fatektool.cli.shared.documents import error_document
+from fatektool.cli.shared.options import SecondsType
 from fatektool.cli.shared.output import print_stderr, with_prefix
 from fatektool.errors import FatektoolError, LineError, TransportClosed
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
 _MOST_FAILURES: Final = 10
 T = TypeVar("T")
+F = TypeVar("F", bound="Callable[..., Any]")
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +36,31 @@ class RoundTimes:
 
     interval_s: float
     count: int | None = None
+
+
+def rounds_options(default: str) -> Callable[[F], F]:
+    """``--interval`` and ``--count``; the command gets both, None for what is not given.
+
+    Args:
+        default: the interval then, in words.
+    """
+
+    def decorate(function: F) -> F:
+        count = click.option(
+            "--count",
+            type=click.IntRange(1),
+            metavar="N",
+            help="Number of rounds; by default until q or Ctrl-C.",
+        )
+        interval = click.option(
+            "--interval",
+            type=SecondsType(0, 86400),
+            metavar="S",
+            help=f"Time from round to round; by default {default}.",
+        )
+        return interval(count(function))
+
+    return decorate
 
 
 def paced_rounds(

@@ -15,9 +15,9 @@ from fatektool.cli.elements.watch.rounds import SnapshotRounds
 from fatektool.cli.programs.program_files import comments_for, comments_options
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.modbus_map import modbus_map_option
-from fatektool.cli.shared.options import SecondsType, completing
+from fatektool.cli.shared.options import completing
 from fatektool.cli.shared.report import report_option, watch_report
-from fatektool.cli.shared.rounds import RoundTimes, failed_in_line, paced_rounds
+from fatektool.cli.shared.rounds import RoundTimes, failed_in_line, paced_rounds, rounds_options
 from fatektool.cli.shared.streams import output_loss
 from fatektool.errors import FatektoolError, PlcError
 from fatektool.jobs.elements.items import comments_of
@@ -42,15 +42,7 @@ if TYPE_CHECKING:
 )
 @click.argument("elements", nargs=-1, shell_complete=completing("complete_elements"))
 @spec_options
-@click.option(
-    "--interval",
-    type=SecondsType(0, 86400),
-    metavar="S",
-    help="Interval of the rounds; by default interval_s of --spec, else 1.",
-)
-@click.option(
-    "--count", type=click.IntRange(1), metavar="N", help="Number of rounds; by default until q or Ctrl-C."
-)
+@rounds_options("interval_s of --spec, else 1")
 @comments_options
 @report_option
 @connection_options

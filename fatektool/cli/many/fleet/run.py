@@ -15,8 +15,8 @@ from fatektool.cli.many.fleet.view import View
 from fatektool.cli.many.fleet.words import not_done_words, summary_words
 from fatektool.cli.many.outcome import JobResult, Outcome, failure
 from fatektool.cli.shared.connection import Connection
-from fatektool.cli.shared.inventory_file import complete_selection, inventory_option, open_inventory
-from fatektool.cli.shared.options import SecondsType, voice_options
+from fatektool.cli.shared.inventory_file import inventory_option, open_inventory, select_option
+from fatektool.cli.shared.options import deadline_option, voice_options
 from fatektool.errors import FatektoolError
 from fatektool.files.times import utc
 from fatektool.inventory.select import select
@@ -57,22 +57,11 @@ class Orders:
     deadline_s: float
 
 
-def _complete_selection(context: click.Context, _: click.Parameter, incomplete: str) -> list[Any]:
-    return complete_selection(context.params.get("inventory"), incomplete)
-
-
 def fleet_options(function: F) -> F:
     """Which PLCs, how many at once, how long each; the command gets ``orders`` and ``voice``."""
 
     @inventory_option
-    @click.option(
-        "--select",
-        "words",
-        multiple=True,
-        metavar="NAME|TAG|GLOB",
-        shell_complete=_complete_selection,
-        help="Only these PLCs; repeat for more.  [default: all]",
-    )
+    @select_option
     @click.option(
         "--jobs",
         type=click.IntRange(1, 1000),
@@ -81,14 +70,7 @@ def fleet_options(function: F) -> F:
         metavar="N",
         help="Number of lines at the same time.",
     )
-    @click.option(
-        "--deadline",
-        type=SecondsType(0, 86400, above=True),
-        default=1800.0,
-        show_default=True,
-        metavar="S",
-        help="Time limit for one PLC.",
-    )
+    @deadline_option(1800.0, "Time limit for one PLC.")
     @voice_options
     @wraps(function)
     def with_orders(

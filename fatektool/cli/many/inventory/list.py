@@ -7,15 +7,13 @@ from typing import TYPE_CHECKING
 import click
 
 from fatektool.cli.many.inventory.documents import inventory_document
-from fatektool.cli.shared.inventory_file import complete_selection, inventory_option, open_inventory
+from fatektool.cli.shared.inventory_file import inventory_option, open_inventory, select_option
 from fatektool.cli.shared.options import voice_options
 from fatektool.inventory.select import select
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
-
-    from click.shell_completion import CompletionItem
 
     from fatektool.cli.shared.output import Voice
     from fatektool.inventory.entries import PlcEntry
@@ -24,19 +22,8 @@ if TYPE_CHECKING:
 _HEAD = ("name", "target", "station", "protocol", "tags")
 
 
-def _complete_selection(context: click.Context, _: click.Parameter, incomplete: str) -> list[CompletionItem]:
-    return complete_selection(context.params.get("inventory"), incomplete)
-
-
 @click.command("list", epilog="Example: fatektool inventory list --select hall")
-@click.option(
-    "--select",
-    "words",
-    multiple=True,
-    metavar="NAME|TAG|GLOB",
-    shell_complete=_complete_selection,
-    help="Only these PLCs.",
-)
+@select_option
 @inventory_option
 @voice_options
 def list_command(inventory: Path | None, words: tuple[str, ...], voice: Voice) -> None:

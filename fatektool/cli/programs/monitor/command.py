@@ -12,9 +12,9 @@ from fatektool.cli.programs.monitor.screen import Screen
 from fatektool.cli.programs.network_range import chosen
 from fatektool.cli.programs.program_files import comments_at, comments_options, program_file, warn_of_code
 from fatektool.cli.shared.connection_options import connection_options
-from fatektool.cli.shared.options import PATH, SecondsType
+from fatektool.cli.shared.options import PATH
 from fatektool.cli.shared.pairs import apart
-from fatektool.cli.shared.rounds import RoundTimes, failed_in_line
+from fatektool.cli.shared.rounds import RoundTimes, failed_in_line, rounds_options
 from fatektool.errors import FatektoolError, PlcError
 from fatektool.jobs.monitor.live import LiveNetwork, Monitor
 
@@ -33,15 +33,7 @@ _INTERVAL_ON_SCREEN_S: Final = 0.25
 @click.argument("file", type=PATH)
 @click.option("--network", "wanted", multiple=True, metavar="N|N-M", help="Only these networks; repeat it.")
 @click.option("--why", metavar="ELEMENT", help="Say why ELEMENT is on or off, once.")
-@click.option(
-    "--interval",
-    type=SecondsType(0, 86400),
-    metavar="S",
-    help="From round to round; by default 0.25 on a terminal, else 1.",
-)
-@click.option(
-    "--count", type=click.IntRange(1), metavar="N", help="So many rounds; by default until q or Ctrl-C."
-)
+@rounds_options("0.25 on a terminal, else 1")
 @comments_options
 @connection_options
 def monitor_command(
