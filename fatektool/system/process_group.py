@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
 _OWN_GROUP: Final = getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0) | getattr(
     subprocess, "CREATE_NO_WINDOW", 0
 )
+_LOOK_S: Final = 0.2
+"""A wait of Windows for the end of a process is not ended by Ctrl-C."""
 
 
 class ProcessGroup:
@@ -39,6 +42,24 @@ class ProcessGroup:
 
             handle = int(self.process._handle)  # type: ignore[attr-defined]  # noqa: SLF001  # its only place
             self._job = Job.of(handle)
+
+    def wait(self, time_limit_s: float) -> int:
+        """Wait for the end of the program; Ctrl-C ends the wait, also on Windows.
+
+        Returns:
+            its exit code.
+
+        Raises:
+            TimeoutExpired: it did not end in time.
+        """
+        until = time.perf_counter() + time_limit_s
+        while True:
+            rest_s = max(0.0, until - time.perf_counter())
+            try:
+                return self.process.wait(min(_LOOK_S, rest_s))
+            except subprocess.TimeoutExpired:
+                if rest_s <= _LOOK_S:
+                    raise
 
     def terminate(self) -> None:
         """Ask the program and its children to end; on Windows end them."""

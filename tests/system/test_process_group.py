@@ -42,6 +42,26 @@ def test_what_a_command_leaves_in_the_background_goes_on() -> None:
     group.close()
 
 
+def test_the_wait_for_a_command_is_one_that_ctrl_c_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A wait of Windows for a process goes on to its end: so each is short."""
+    group = ProcessGroup([sys.executable, "-c", "import threading; threading.Event().wait()"])
+    waits: list[float | None] = []
+    times = iter([0.0, 0.0, 10.0, 29.9])
+
+    def wait(timeout: float | None = None) -> int:
+        waits.append(timeout)
+        raise subprocess.TimeoutExpired("", timeout or 0)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(group.process, "wait", wait)
+        patched.setattr("fatektool.system.process_group.time.perf_counter", lambda: next(times))
+        with pytest.raises(subprocess.TimeoutExpired):
+            group.wait(30)
+    assert [round(each or 0, 3) for each in waits] == [0.2, 0.2, 0.1]
+    group.kill()
+    group.close()
+
+
 def test_a_group_that_windows_does_not_make_is_ended_by_its_program(monkeypatch: pytest.MonkeyPatch) -> None:
     """An older Windows has a process in one job alone: then at least the program itself is ended."""
     group = ProcessGroup([sys.executable, "-c", "import threading; threading.Event().wait()"])

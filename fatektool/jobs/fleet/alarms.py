@@ -94,7 +94,7 @@ def run_command(
             return f"cannot start {program}: it is not a program; for a script name the program that runs it"
         return f"cannot start {program}: {getattr(error, 'strerror', None) or error}"
     try:
-        code = group.process.wait(time_limit_s)
+        code = group.wait(time_limit_s)
     except subprocess.TimeoutExpired:
         group.kill()
         return f"{program} did not end within {time_limit_s:g} s, and was stopped"

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
+_LOOK_S: Final = 0.5
+"""A wait of Windows for a queue is not ended by Ctrl-C."""
 _GRACE_S: Final = 3.0
 """How long an interrupted turn may take to see it: a read looks every quarter of a second."""
 
@@ -133,9 +135,10 @@ class Fleet(Generic[T]):
         """
         while self._reported < len(self.turns):
             try:
-                turn = self._ended.get(timeout=look_s)
+                turn = self._ended.get(timeout=_LOOK_S if look_s is None else look_s)
             except Empty:
-                yield None
+                if look_s is not None:
+                    yield None
                 continue
             self._reported += 1
             yield turn

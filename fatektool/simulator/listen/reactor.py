@@ -21,12 +21,14 @@ import heapq
 import itertools
 import select
 import selectors
+import signal
 import socket
+import threading
 import time
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from fatektool.simulator.listen.base import Lines, Listener
 
@@ -59,16 +61,32 @@ class Reactor:
     def serve_until(self, stop: Callable[[], bool] = bool) -> None:
         """Serve until ``stop()`` is called, or the predicate returns True.
 
-        The predicate is called only after a wake-up; ``stop`` wakes the thread.
+        The predicate is called only after a wake-up; ``stop`` wakes the thread, a signal the main thread.
         """
         due = self._due
-        while not self._stopping and not stop():
-            for key, events in self._ready():
-                key.data(events)
-            while due and due[0][0] <= self.now():
-                _, _, deliver, data = heapq.heappop(due)
-                deliver(data)
+        with self._woken_by_signals():
+            while not self._stopping and not stop():
+                for key, events in self._ready():
+                    key.data(events)
+                while due and due[0][0] <= self.now():
+                    _, _, deliver, data = heapq.heappop(due)
+                    deliver(data)
         self._stopping = False
+
+    @contextlib.contextmanager
+    def _woken_by_signals(self) -> Iterator[None]:
+        """Let a signal end the wait: on Windows it does not by itself, so Ctrl-C would wait for a client.
+
+        Elsewhere this is for a signal that comes just before the wait begins.
+        """
+        if threading.current_thread() is not threading.main_thread():
+            yield
+            return
+        before = signal.set_wakeup_fd(self._wake_up.fileno(), warn_on_full_buffer=False)
+        try:
+            yield
+        finally:
+            signal.set_wakeup_fd(before)
 
     def stop(self) -> None:
         """Make ``serve_until`` return; may be called from a signal handler or another thread."""

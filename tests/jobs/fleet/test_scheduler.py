@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
+from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING
 
 import pytest
@@ -70,6 +71,31 @@ def test_lines_run_side_by_side() -> None:
         return ""
 
     assert len(run(work_of("a", "b", "c", work=work), jobs=3)) == 3
+
+
+def test_no_wait_is_one_that_ctrl_c_cannot_end() -> None:
+    """On Windows a wait for a queue goes on to its end: so each has one, and is begun again."""
+    waits: list[float | None] = []
+    looked = threading.Event()
+
+    class Queue(SimpleQueue[Turn[str]]):
+        def get(self, block: bool = True, timeout: float | None = None) -> Turn[str]:
+            waits.append(timeout)
+            if len(waits) == 1:
+                raise Empty
+            looked.set()
+            return super().get(block, timeout)
+
+    def work(_: Turn[str]) -> str:
+        looked.wait(GUARD_S)
+        return ""
+
+    fleet = Fleet(work_of("a", work=work), 1, GUARD_S)
+    fleet._ended = Queue()
+    with fleet:
+        assert [turn.task.name for turn in fleet.ended() if turn is not None] == ["a0"]
+    assert len(waits) > 1
+    assert all(wait is not None and wait <= 1 for wait in waits)
 
 
 def test_the_longest_line_begins_first() -> None:
