@@ -20,13 +20,11 @@ from fatektool.history.repository import Repository
 from fatektool.history.writing import writing
 from tests.history.books import GIT, ONE, THREE, TWO, Book, git
 from tests.root import ROOT
+from tests.users import two_users
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-as_root = pytest.mark.skipif(
-    not hasattr(os, "geteuid") or os.geteuid() != 0, reason="only root can be two users"
-)
 posix = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such rights")
 
 GROUP, FIRST, SECOND = 64100, 64101, 64102  # of nobody
@@ -123,7 +121,7 @@ def as_user(number: int, folder: Path, *words: str) -> str:
     return str(done.stdout)
 
 
-@as_root
+@two_users
 @pytest.mark.parametrize("umask", ["022", "077"])
 def test_two_users_in_turns(shared: Path, umask: str) -> None:
     """As many rounds as make both write into each folder of objects of the other's, and packs in between."""
@@ -149,7 +147,7 @@ def test_two_users_in_turns(shared: Path, umask: str) -> None:
     assert (found.commits, found.faults) == (2 * ROUNDS, ())
 
 
-@as_root
+@two_users
 def test_another_user_where_nothing_is_shared(shared: Path) -> None:
     """It is said what lets several users write."""
     git(shared, "-c", f"safe.directory={shared}", "config", "--unset", "core.sharedRepository")

@@ -18,11 +18,11 @@ import pytest
 from fatektool.errors import DataError, FatektoolError, FileWarning, UsageError
 from fatektool.files.atomic import read_bounded, require_folder, require_place, write_new, write_whole
 from tests.platforms import posix, symbolic_links, windows
+from tests.users import folder_for_all, no_root, not_as_root_alone
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-as_root = hasattr(os, "geteuid") and os.geteuid() == 0
 OLD, NEW = b"old" * 1000, b"new" * 2000
 
 
@@ -129,11 +129,13 @@ def test_a_device_is_no_file_to_replace(*, overwrite: bool) -> None:
 
 
 @posix("modes of folders")
-@pytest.mark.skipif(as_root, reason="root writes to read-only folders")
-def test_a_read_only_folder(tmp_path: Path) -> None:  # pragma: no cover  # the container's user is root
-    tmp_path.chmod(0o500)
-    with pytest.raises(UsageError, match="is not writable; choose another folder"):
-        write_whole(tmp_path / "file", NEW, overwrite=False)
+@not_as_root_alone
+def test_a_read_only_folder() -> None:
+    with folder_for_all() as folder:
+        folder.chmod(0o555)
+        with no_root(), pytest.raises(UsageError, match="is not writable; choose another folder"):
+            write_whole(folder / "file", NEW, overwrite=False)
+        assert names(folder) == []
 
 
 def test_a_read_only_folder_by_what_the_system_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -17,6 +17,7 @@ import pytest
 from fatektool.program.archive import load_backup, save_backup
 from tests.cli.running import Door, one_line, served
 from tests.program.samples import backup, program
+from tests.users import IS_ROOT, NOBODY
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
 WORDS, PAGES = 256, 5
 OLD, NEW, OTHER = (program(WORDS, seed=seed) for seed in (1, 2, 3))
 KILLED = -signal.SIGKILL
-NOBODY = 65534
 BACKUP = ["backup", "x.json", "--force"]
 RESTORE = ["restore", "new.json", "--yes", "--json"]
 
@@ -366,7 +366,7 @@ def test_a_disk_that_is_really_too_small(
 @pytest.mark.skipif(os.name != "posix", reason="POSIX rights")
 @pytest.mark.parametrize("words", [BACKUP, [*RESTORE, "-q"]], ids=["backup", "restore"])
 def test_a_folder_that_may_only_be_read(door: Door, mortals: Mortals, words: list[str]) -> None:
-    user = NOBODY if os.geteuid() == 0 else None  # root may write everywhere, so the child is somebody else
+    user = NOBODY if IS_ROOT else None  # root may write everywhere, so the child is somebody else
     with tempfile.TemporaryDirectory() as name, tempfile.TemporaryDirectory() as locks:
         folder = Path(name)
         save_backup(backup(NEW), folder / "new.json")

@@ -23,6 +23,7 @@ from fatektool.simulator.listen.pty import PTY_SUPPORTED
 from fatektool.simulator.listen.servers import Server, running
 from tests.cli.running import one_line, process, started
 from tests.guard import GUARD_S
+from tests.users import NOBODY, two_users
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.skipif(not PTY_SUPPORTED, reason="needs ptys and POSIX locks")
 
 REGISTERS = 1000
-NOBODY = 65534
 CLIENT = Path(__file__).with_name("turns.py")
 
 
@@ -229,9 +229,6 @@ def test_a_holder_that_stands_still_is_named(tmp_path: Path) -> None:
 
 # --- another user -----------------------------------------------------------------------------------------
 
-as_root = pytest.mark.skipif(
-    not hasattr(os, "geteuid") or os.geteuid() != 0, reason="only root can be two users"
-)
 TRY = """
 import os, pathlib, sys  # all that is loaded later: another user may not read this Python
 from fatektool.errors import FatektoolError
@@ -273,7 +270,7 @@ def tried(user: int) -> str:
         return other.communicate()[0].strip()
 
 
-@as_root
+@two_users
 @pytest.mark.parametrize("users", [(0, NOBODY), (NOBODY, 0), (1, NOBODY)])
 def test_a_lock_file_that_another_user_left_is_nobodys(shared: Path, users: tuple[int, int]) -> None:
     first, second = users
@@ -287,7 +284,7 @@ def test_a_lock_file_that_another_user_left_is_nobodys(shared: Path, users: tupl
     assert tried(second) == "locked"
 
 
-@as_root
+@two_users
 @pytest.mark.parametrize("users", [(0, NOBODY), (NOBODY, 0)])
 @pytest.mark.parametrize("mode", [0o644, 0o444])
 def test_a_lock_file_of_another_user_that_may_only_be_read(
@@ -306,7 +303,7 @@ def test_a_lock_file_of_another_user_that_may_only_be_read(
     assert tried(other) == "locked"
 
 
-@as_root
+@two_users
 @pytest.mark.parametrize("users", [(0, NOBODY), (NOBODY, 0)])
 def test_a_lock_folder_of_root_alone_is_no_place_for_root_either(
     users: tuple[int, int], shared: Path, monkeypatch: pytest.MonkeyPatch
@@ -325,7 +322,7 @@ def test_a_lock_folder_of_root_alone_is_no_place_for_root_either(
         holder.kill()
 
 
-@as_root
+@two_users
 def test_a_lock_file_of_another_user_that_may_not_even_be_read(shared: Path) -> None:
     """No lock file of fatektool is like that. It is said which file, and what to do."""
     assert tried(0) == "locked"
@@ -336,7 +333,7 @@ def test_a_lock_file_of_another_user_that_may_not_even_be_read(shared: Path) -> 
     assert "FATEKTOOL_LOCK_DIR" in said
 
 
-@as_root
+@two_users
 def test_a_process_killed_while_it_makes_the_file_keeps_no_other_user_out(shared: Path) -> None:
     """The file is for all users from the moment that it has its name."""
     die = TRY.replace("lock.acquire()", "os.fchmod = lambda *_: os.kill(os.getpid(), 9)\n    lock.acquire()")

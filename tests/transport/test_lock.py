@@ -17,11 +17,11 @@ from fatektool.errors import PortBusy, UsageError
 from fatektool.transport import lock as lock_module
 from fatektool.transport.lock import PortLock
 from tests.platforms import posix, symbolic_links
+from tests.users import folder_for_all, no_root, not_as_root_alone
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-as_root = hasattr(os, "geteuid") and os.geteuid() == 0
 RESOURCE = "/dev/ttyUSB0"
 HOLDER = """
 import sys
@@ -278,26 +278,19 @@ def test_the_file_is_for_all_users_to_lock() -> None:
 
 
 @posix("modes of files; on Windows they are not set")
+@not_as_root_alone
 def test_a_file_that_may_only_be_read_can_be_locked(monkeypatch: pytest.MonkeyPatch) -> None:
-    lock = PortLock(RESOURCE, 0)
-    Path(lock.path).write_text("4711\n")
-    Path(lock.path).chmod(0o444)
-    if as_root:  # whom no mode keeps out
-        monkeypatch.setattr(os, "open", as_another_user(os.open))
-    lock.acquire()
-    assert not held_by_nobody()
-    assert Path(lock.path).read_text() == "4711\n"
-    lock.release()
-    assert held_by_nobody()
-
-
-def as_another_user(really_open: object) -> object:
-    def open_to_read(path: str, flags: int, *mode: int) -> int:
-        if flags & (os.O_RDWR | os.O_WRONLY) and not flags & os.O_CREAT:
-            raise PermissionError(13, "Permission denied")
-        return int(really_open(path, flags, *mode))  # type: ignore[operator]
-
-    return open_to_read
+    with folder_for_all() as folder:
+        monkeypatch.setenv("FATEKTOOL_LOCK_DIR", str(folder))
+        lock = PortLock(RESOURCE, 0)
+        Path(lock.path).write_text("4711\n")
+        Path(lock.path).chmod(0o444)
+        with no_root():
+            lock.acquire()
+        assert not held_by_nobody()
+        assert Path(lock.path).read_text() == "4711\n"
+        lock.release()
+        assert held_by_nobody()
 
 
 @pytest.mark.parametrize("place", ["nowhere", "file", "nowhere/deep"])
@@ -316,11 +309,13 @@ def test_a_folder_that_cannot_be_used_is_one_clear_line(
 
 
 @posix("modes of folders")
-@pytest.mark.skipif(as_root, reason="root may write everywhere")
-def test_a_folder_without_the_right_to_write(lock_folder: Path) -> None:
-    lock_folder.chmod(0o555)
-    with pytest.raises(UsageError, match="Permission denied"):
-        PortLock(RESOURCE, 0).acquire()
+@not_as_root_alone
+def test_a_folder_without_the_right_to_write(monkeypatch: pytest.MonkeyPatch) -> None:
+    with folder_for_all() as folder:
+        monkeypatch.setenv("FATEKTOOL_LOCK_DIR", str(folder))
+        folder.chmod(0o555)
+        with no_root(), pytest.raises(UsageError, match="Permission denied"):
+            PortLock(RESOURCE, 0).acquire()
 
 
 @pytest.mark.parametrize(

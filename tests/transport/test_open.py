@@ -18,13 +18,12 @@ from fatektool.transport.sockets import resolve
 from fatektool.transport.target import Target
 from tests.platforms import not_in_wine, posix
 from tests.transport.media import LINE, listening, needs_pty
+from tests.users import folder_for_all, no_root, not_as_root_alone
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from fatektool.transport.base import Transport
-
-as_root = hasattr(os, "geteuid") and os.geteuid() == 0
 
 
 def opened(target: str, stack: ExitStack, lock_wait_s: float = 0.0) -> Transport:
@@ -95,11 +94,16 @@ def test_a_device_that_is_no_terminal() -> None:
 
 
 @posix("modes of files")
-@pytest.mark.skipif(as_root, reason="root may open everything")
-def test_no_right_to_the_port(tmp_path: Path) -> None:
-    port = tmp_path / "ttyUSB0"
-    port.touch(0o000)
-    error = refusal(str(port))
+@not_as_root_alone
+def test_no_right_to_the_port(monkeypatch: pytest.MonkeyPatch) -> None:
+    with folder_for_all() as folder:
+        port = folder / "ttyUSB0"
+        port.touch(0o600)
+        monkeypatch.setenv("FATEKTOOL_LOCK_DIR", str(folder))
+        assert "cannot be used as a serial port" in refusal(str(port)).message  # all is loaded
+        port.chmod(0o000)
+        with no_root():
+            error = refusal(str(port))
     assert error.message == f"{port}: no permission to use the port"
     assert "dialout" in str(error.hint)
 

@@ -25,6 +25,7 @@ from fatektool.transport.lock import PortLock
 from tests.cli.running import check, process, started
 from tests.plant import error_of, recorded, snapshot_of
 from tests.platforms import posix
+from tests.users import two_users
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -348,9 +349,6 @@ def test_killed_while_appending(place: Path) -> None:
 
 # --- folders that may be written and not listed, and disks that cannot sync ---------------------------------
 
-as_root = pytest.mark.skipif(
-    not hasattr(os, "geteuid") or os.geteuid() != 0, reason="only root can be two users"
-)
 AS_NOBODY = """
 import contextlib, io, os, sys
 from fatektool.cli import main, run
@@ -385,7 +383,7 @@ def unlisted() -> Iterator[Path]:
 
 
 @pytest.mark.usefixtures("place")
-@as_root
+@two_users
 def test_a_folder_that_may_not_be_listed(unlisted: Path) -> None:
     """One file, told of as written."""
     done = as_nobody(unlisted, "snapshot", "R0:3", "-p", "sim:", "-o", f"{unlisted}/")
@@ -403,7 +401,7 @@ def test_a_folder_that_may_not_be_listed(unlisted: Path) -> None:
 
 
 @pytest.mark.usefixtures("place")
-@as_root
+@two_users
 def test_old_snapshots_that_cannot_be_dropped(unlisted: Path) -> None:
     done = as_nobody(unlisted, "snapshot", "R0:3", "-p", "sim:", "-o", f"{unlisted}/", "--keep", "1")
     assert done.returncode == 0, done.stderr
