@@ -3,7 +3,7 @@
 ::
 
     drop          no answer
-    flip          one of the low 7 bits of one byte of the answer is wrong
+    flip          one of the low 7 bits of one byte of the answer is wrong, not only the case of a letter
     truncate      the answer ends too early, after its first byte at the soonest
     noise         1 to 8 random bytes before the answer, also those that delimit one
     duplicate     the answer is sent twice
@@ -62,6 +62,8 @@ FAULT_KINDS = (*PROBABILITY_KINDS, BIT_ERRORS, POWER_CUT)
 DEFAULT_SLOW_S = 0.8
 _MAX_NOISE = 8
 _STATIONS = 0xFE
+_CASE = 0x20
+"""The bit that a small letter has and a capital has not."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,7 +183,10 @@ class Faults:
         if self._strikes("flip"):
             spoiled = bytearray(answer)
             random = self._random["flip"]
-            spoiled[random.randrange(len(answer))] ^= 1 << random.randrange(7)
+            place, bit = random.randrange(len(answer)), 1 << random.randrange(7)
+            if bit == _CASE and answer[place : place + 1].isalpha():  # a small hex digit is read as a capital
+                bit >>= 1
+            spoiled[place] ^= bit
             answer = bytes(spoiled)
         answer = self._with_bit_errors(answer)
         if self._strikes("truncate"):

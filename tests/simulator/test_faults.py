@@ -58,6 +58,7 @@ def test_flip_is_one_of_the_low_seven_bits() -> None:
         changed = [a ^ b for a, b in zip(answer, ANSWER, strict=True) if a != b]
         assert len(changed) == 1
         assert changed[0] in (1, 2, 4, 8, 16, 32, 64)
+        assert answer.upper() != ANSWER, "a letter in the other case is no wrong answer"
 
 
 def test_truncate_leaves_a_beginning() -> None:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 import shlex
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from fatektool.cli import run
 from fatektool.errors import DataError, NoAnswer
+from fatektool.exchange.link import Link
 from fatektool.jobs.elements.reads import read_elements
 from fatektool.jobs.elements.selection import parse_items
 from fatektool.jobs.snapshots.apply import plan_apply
@@ -24,7 +25,7 @@ from tests.plant import Plant, cut_in_write, error_of, is_write, recorded, small
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from fatektool.client import Plc
+    from fatektool.protocol.commands import Request
     from tests.rigs import Simulated
 
 
@@ -285,11 +286,15 @@ def test_an_interrupt_in_the_middle(plant: Plant, place: Path, monkeypatch: pyte
     (place / "a.json").write_text(as_json(snapshot_of("R0-R99")))
     plant.write("R0-R99=2")
 
-    def interrupted(plc: Plc, *_: object) -> None:
-        plc.link.counters.writes += 1
+    ask = Link.ask
+
+    def interrupted(link: Link, request: Request[Any]) -> Any:
+        if not request.writes:
+            return ask(link, request)
+        link.counters.writes += 1
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("fatektool.jobs.elements.planned.write_elements", interrupted)
+    monkeypatch.setattr(Link, "ask", interrupted)
     done = plant.cli("snapshot", "apply", "a.json", "--yes")
     assert done.code == 6
     assert "  cause            interrupted" in done.err.splitlines()
