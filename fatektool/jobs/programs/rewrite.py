@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-from fatektool.errors import DataError, PlcError, PlcNotReady, PlcRefused
+from fatektool.errors import DataError, LineError, PlcError, PlcNotReady, PlcRefused
 from fatektool.program.image import ranges
 
 if TYPE_CHECKING:
@@ -118,8 +118,19 @@ class Rewrite:
                 hint="check whether the PLC was replaced, then run the restore again",
             )
         if self._may_stop:
+            self._stop()
+
+    def _stop(self) -> None:
+        """STOP the PLC; an end on the way says that the machine may have stopped."""
+        doubt = "it is not known whether the PLC is in RUN or in STOP"
+        try:
             self._plc.stop()
-            self.running = False
+        except LineError as error:
+            error.message = f"{error.message}: {doubt}"
+            raise
+        except KeyboardInterrupt:
+            raise KeyboardInterrupt(doubt) from None
+        self.running = False
 
     def write(self, progress: Progress) -> None:
         """Write the pages in order, read the whole program back and compare.
@@ -267,8 +278,7 @@ class Rewrite:
         if running:
             self._went_to_run = True
             if self._may_stop:
-                self._plc.stop()
-                self.running = False
+                self._stop()
         return running
 
     def _read_back(self, program: Program, pages: Sequence[int], phase: str, progress: Progress) -> list[int]:

@@ -104,7 +104,7 @@ def _look(plan: WritePlan) -> None:
 def _with(error: Exception | KeyboardInterrupt, unchanged: str) -> BaseException:
     """The same error, which says that the PLC is as it was."""
     if isinstance(error, KeyboardInterrupt):
-        return KeyboardInterrupt(unchanged)
+        return KeyboardInterrupt("; ".join([*map(str, error.args), unchanged]))
     if isinstance(error, FatektoolError):
         error.message = f"{error.message}: {unchanged}"
     return error
@@ -129,7 +129,7 @@ def _failed(
         else:
             mark.end(complete=False)
             return (LineError if isinstance(error, LineError) else PlcError)(
-                f"{cause}; rolled back: the PLC holds {_before(plan)} again, read back and verified",
+                f"{cause}; rolled back: the PLC holds {_before(plan)}, read back and verified",
                 hint=getattr(error, "hint", None),
                 rolled_back=True,
                 **_saved(plan, path),

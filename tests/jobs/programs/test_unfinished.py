@@ -242,6 +242,34 @@ def test_without_a_safety_backup_that_is_said(tmp_path: Path) -> None:
     assert caught.value.details["safety_backup"] is None
 
 
+def test_a_stop_without_an_answer_may_have_stopped_the_machine(tmp_path: Path) -> None:
+    bench = Bench(OLD)
+    bench.device.running = True
+    bench.tap.forge = lambda _, answer: b"" if bench.tap.count.get(RUN_STOP) else answer
+    with pytest.raises(
+        LineError, match="it is not known whether the PLC is in RUN or in STOP: nothing was written"
+    ):
+        put(bench, tmp_path, stop=True)
+    assert bench.pages == OLD.pages
+
+
+def test_ctrl_c_at_stop_may_have_stopped_the_machine(tmp_path: Path) -> None:
+    bench = Bench(OLD)
+    bench.device.running = True
+
+    def interrupt(seen: Seen) -> None:
+        if seen.command == RUN_STOP:
+            raise KeyboardInterrupt
+
+    bench.tap.after = interrupt
+    with pytest.raises(
+        KeyboardInterrupt, match="it is not known whether the PLC is in RUN or in STOP; nothing was written"
+    ):
+        put(bench, tmp_path, stop=True)
+    assert not bench.device.running
+    assert not list(tmp_path.iterdir())
+
+
 # --- Ctrl-C ---------------------------------------------------------------------------------------------
 
 
@@ -377,7 +405,7 @@ def test_rollback_after_a_refusal(tmp_path: Path) -> None:
     error = caught.value
     assert error.exit_code == 4
     assert "refused to write program page 5" in error.message
-    back = "rolled back: the PLC holds its previous program and is in STOP again, read back and verified"
+    back = "; rolled back: the PLC holds its previous program and is in STOP, read back and verified"
     assert back in str(error)
     assert error.details["rolled_back"] is True
     assert bench.pages == OLD.pages
