@@ -25,6 +25,13 @@ if TYPE_CHECKING:
     from tests.cli.running import Cli, Done
 
 
+def copied(made: Path, folder: Path) -> None:
+    """Copy PLCs and backups that were made once into the folder of a test: the targets in them too."""
+    for path in made.iterdir():
+        text = path.read_text(encoding="utf-8")
+        (folder / path.name).write_text(text.replace(str(made), str(folder)), encoding="utf-8")
+
+
 class Plant:
     """A simulated PLC whose memory lies in a file."""
 

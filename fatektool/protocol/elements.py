@@ -15,7 +15,7 @@ F and DF are only in the M-series paper (section 2.4); FACON writes them like R 
 from __future__ import annotations
 
 import re
-from functools import total_ordering
+from functools import partial, total_ordering
 from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import UsageError
@@ -180,4 +180,5 @@ class Stretch(Value):
         return self.first.after(self.count - 1)
 
     def __iter__(self) -> Iterator[Element]:
-        return map(self.first.after, range(self.count))
+        symbol, address, stride = self.first.symbol, self.first.address, self.first.kind.stride
+        return map(partial(Element, symbol), range(address, address + self.count * stride, stride))

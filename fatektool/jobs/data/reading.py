@@ -9,7 +9,7 @@ nothing: it is read once. Which discretes are disabled is read twice.
 
 from __future__ import annotations
 
-from itertools import groupby
+from itertools import chain, groupby
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from fatektool.callbacks import ignore
@@ -67,22 +67,41 @@ def read_data(plc: Plc, status: DetailedStatus, progress: Progress = ignore) -> 
     first = read_values(plc, counts, progress, phase="reading data")
     again = read_values(plc, counts, progress, phase="reading data, pass 2", uses=CONSTANT)
     noisy = line_trouble(plc) != trouble
-    doubtful = [each for each, value in again.values.items() if first.values.get(each) != value]
+    values = _Tables(counts)
+    values.put(first.values)
+    doubtful = [each for each, value in again.values.items() if values.of(each) != value]
     third = read_elements(plc, doubtful).values if doubtful else {}
     moving = [each for each in doubtful if not (noisy and third.get(each) == again.values[each])]
-    values = {**first.values, **again.values, **third}
+    values.put(again.values)
+    values.put(third)
     disabled = _read_disabled_twice(plc, status.system)
     return DataPart(
         time,
         status.flags.running,
-        {
-            symbol: tuple(values.get(Element(symbol, at)) for at in range(count))
-            for symbol, count in counts.items()
-        },
+        {symbol: tuple(table) for symbol, table in values.tables.items()},
         {str(each): on for each, on in disabled.items()},
         tuple(spans_of(moving)),
-        _errors_in_spans(each for each in first.errors.items() if each[0] not in values),
+        _errors_in_spans(each for each in first.errors.items() if values.of(each[0]) is None),
     )
+
+
+class _Tables:
+    """Values by address, a table for each kind; None for an element without one.
+
+    Elements are not looked up in dictionaries here: there are tens of thousands of them.
+    """
+
+    def __init__(self, counts: Mapping[str, int]) -> None:
+        self.tables: dict[str, list[int | None]] = {
+            symbol: [None] * count for symbol, count in counts.items()
+        }
+
+    def put(self, values: Mapping[Element, int]) -> None:
+        for element, value in values.items():
+            self.tables[element.symbol][element.address] = value
+
+    def of(self, element: Element) -> int | None:
+        return self.tables[element.symbol][element.address]
 
 
 def data_counts(plc: Plc, system: System) -> dict[str, int]:
@@ -188,7 +207,8 @@ def read_held(plc: Plc, system: System) -> dict[Element, bool]:
         LineError: no answer.
     """
     has = limits(system)
-    wanted = [Element(symbol, at) for symbol in "XYMSTC" for at in range(has[symbol])]
+    kinds = (Stretch(Element(symbol, 0), has[symbol]) for symbol in "XYMSTC" if has[symbol])
+    wanted = [*chain.from_iterable(kinds)]
     flags, _ = read_disabled(plc, wanted)
     disabled = [element for element in wanted if flags.get(element)]
     on = read_elements(plc, disabled).values if disabled else {}

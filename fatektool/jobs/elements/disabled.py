@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from operator import attrgetter
+from typing import TYPE_CHECKING, Final
 
 from fatektool.errors import PlcRefused
 from fatektool.exchange.batch import proven, read_all, read_until_refused
 from fatektool.jobs.elements.division import Division, Refusals
 from fatektool.protocol.commands import MAX_DISCRETES, Command, ReadDisabled
+from fatektool.protocol.elements import Stretch
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from fatektool.client import Plc
     from fatektool.protocol.elements import Element
+
+_BY_PLACE: Final = attrgetter("symbol", "address")
 
 
 def read_disabled(plc: Plc, elements: Iterable[Element]) -> tuple[dict[Element, bool], Refusals]:
@@ -30,7 +34,7 @@ def read_disabled(plc: Plc, elements: Iterable[Element]) -> tuple[dict[Element, 
     """
     if Command.READ_DISABLED not in plc.link.codec.commands:
         return {}, Refusals()
-    wanted = sorted(set(elements))
+    wanted = sorted(set(elements), key=_BY_PLACE)
     return proven(plc.link, lambda: _read(plc, wanted, fenced=False), lambda: _read(plc, wanted, fenced=True))
 
 
@@ -45,7 +49,7 @@ def _read(plc: Plc, wanted: list[Element], *, fenced: bool) -> tuple[dict[Elemen
                 plc.link.fence(requests[0])
             answers, refusal = read_until_refused(plc.link, requests[:1] if fenced else requests)
             for request, bits in zip(requests, answers, strict=False):
-                flags.update({request.first.after(place): bit for place, bit in enumerate(bits)})
+                flags.update(zip(Stretch(request.first, len(bits)), bits, strict=True))
             requests = requests[len(answers) + (refusal is not None) :]
         return [element for element in some if element not in flags]
 
@@ -69,7 +73,7 @@ def _runs(elements: Iterable[Element]) -> Iterator[list[Element]]:
     """Neighbours together, as many as one request asks for."""
     run: list[Element] = []
     for element in elements:
-        if run and (element != run[-1].after(1) or len(run) == MAX_DISCRETES):
+        if run and (_BY_PLACE(element) != (run[-1].symbol, run[-1].address + 1) or len(run) == MAX_DISCRETES):
             yield run
             run = []
         run.append(element)

@@ -82,12 +82,15 @@ def read_elements(
     reader.read(wanted)
     count.end()
     ended = plc.link.transport.clock()
-    named_one_by_one = _each(wanted)
+    answered = named_one_by_one = _each(wanted)
     errors = reader.refusals.errors
+    if errors:
+        answered = [element for element in named_one_by_one if element not in errors]
+        errors = {element: errors[element] for element in named_one_by_one if element in errors}
     value = reader.known.value
     return ElementReading(
-        {element: value(element) for element in named_one_by_one if element not in errors},
-        {element: errors[element] for element in named_one_by_one if element in errors},
+        {element: value(element) for element in answered},
+        errors,
         reader.refusals.not_asked,
         reader.requests,
         ended,

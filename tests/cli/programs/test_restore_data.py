@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+import fatektool
 from fatektool.cli.shared.unfinished import unfinished
-from fatektool.program.archive import load_backup
+from fatektool.jobs.programs.backup import backup
+from fatektool.program.archive import load_backup, save_backup
 from fatektool.program.data.uses import Use
 from fatektool.simulator.build import build_simulation
 from tests.jobs.data.filled import disabled_of, fill_some, values_of
-from tests.plant import Plant, cut_in_write, error_of
+from tests.plant import Plant, copied, cut_in_write, error_of
 
 if TYPE_CHECKING:
     from tests.cli.running import Cli
@@ -20,19 +22,25 @@ if TYPE_CHECKING:
 WRITTEN = (Use.KEPT, Use.WORKING)
 
 
-@pytest.fixture
-def plants(tmp_path: Path, cli: Cli, monkeypatch: pytest.MonkeyPatch) -> tuple[Plant, Plant]:
-    """Two PLCs of different contents, and ``press.json`` of the first."""
-    monkeypatch.setenv("FATEKTOOL_STATE_DIR", str(tmp_path / "records"))
-    made = []
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two PLCs of different contents, and ``press.json`` of the first; made once."""
+    folder = tmp_path_factory.mktemp("made")
     for seed, name in ((1, "press.state"), (2, "spare.state")):
-        plant = Plant(tmp_path, cli, name)
-        simulation = build_simulation(state=plant.state)
+        simulation = build_simulation(ladder_words=64, state=folder / name)
         fill_some(simulation.plcs[1], seed)
         simulation.save_if_changed()
-        made.append(plant)
-    assert cli("backup", "press.json", "--data", "-p", made[0].target).code == 0
-    return made[0], made[1]
+    with fatektool.connect(f"sim:{folder / 'press.state'}") as plc:
+        save_backup(backup(plc, data=True), folder / "press.json")
+    return folder
+
+
+@pytest.fixture
+def plants(made: Path, place: Path, cli: Cli, monkeypatch: pytest.MonkeyPatch) -> tuple[Plant, Plant]:
+    """Copies of them."""
+    monkeypatch.setenv("FATEKTOOL_STATE_DIR", str(place.parent / "records"))
+    copied(made, place)
+    return Plant(place, cli, "press.state"), Plant(place, cli, "spare.state")
 
 
 def restore(plant: Plant, *words: str) -> list[object]:

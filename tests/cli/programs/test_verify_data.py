@@ -8,20 +8,34 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.plant import Plant, error_of
+import fatektool
+from fatektool.jobs.programs.backup import backup
+from fatektool.program.archive import save_backup
+from fatektool.simulator.build import build_simulation
+from tests.plant import Plant, copied, error_of
 
 if TYPE_CHECKING:
     from tests.cli.running import Cli
 
 
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A PLC that holds what ``press.json`` has; made once."""
+    folder = tmp_path_factory.mktemp("made")
+    state = folder / "plc.state"
+    build_simulation(ladder_words=64, state=state)
+    with fatektool.connect(f"sim:{state}") as plc:
+        plc.disable("X3")
+        save_backup(backup(plc, data=True), folder / "press.json")
+    return folder
+
+
 @pytest.fixture
-def plant(tmp_path: Path, cli: Cli, monkeypatch: pytest.MonkeyPatch) -> Plant:
-    """A PLC that holds what ``press.json`` has."""
-    monkeypatch.setenv("FATEKTOOL_STATE_DIR", str(tmp_path / "records"))
-    made = Plant(tmp_path, cli)
-    assert cli("discrete", "disable", "X3", "-p", made.target).code == 0
-    assert cli("backup", "press.json", "--data", "-p", made.target).code == 0
-    return made
+def plant(made: Path, place: Path, cli: Cli, monkeypatch: pytest.MonkeyPatch) -> Plant:
+    """A copy of it."""
+    monkeypatch.setenv("FATEKTOOL_STATE_DIR", str(place.parent / "records"))
+    copied(made, place)
+    return Plant(place, cli)
 
 
 def test_the_same(plant: Plant, cli: Cli) -> None:

@@ -63,15 +63,31 @@ def test_a_bad_line_makes_no_wrong_value(fault: str) -> None:
 
 
 def test_a_value_that_changes_is_marked() -> None:
+    """It is that of the third reading, the last request for registers before those for disabled discretes."""
     plant = filled()
     counted = plant.device.memory.registers["R"]
 
     def count(seen: Seen) -> None:
-        if seen.command in {"46", "48"}:
+        if seen.command in {"46", "48"} and "43" not in plant.tap.count:
             counted[7] = (counted[7] + 1) % 0x10000
 
     plant.tap.before = count
-    assert data_of(plant).moving == ("R7",)
+    found = data_of(plant)
+    assert found.moving == ("R7",)
+    assert found.values["R"][7] == counted[7]
+
+
+def test_what_is_refused_in_one_reading_alone_has_a_value_and_no_reason() -> None:
+    holes = {10, 500}
+    made = with_holes(holes)
+
+    def mend(phase: str, _done: int, _total: int) -> None:
+        if "pass 2" in phase:
+            holes.discard(500)
+
+    found = read_data(made.plc, made.plc.detailed_status(), mend)
+    assert [at for at, value in enumerate(found.values["R"]) if value is None] == [10]
+    assert list(found.errors) == ["R10"]
 
 
 def test_what_is_disabled_must_hold_still() -> None:

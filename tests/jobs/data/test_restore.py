@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import pytest
 
@@ -25,10 +25,12 @@ from tests.jobs.data.filled import (
     filled,
     values_of,
 )
-from tests.night import seeds
+from tests.night import night, seeds
 from tests.rigs import Seen, simulated
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from fatektool.jobs.programs.restore import RestorePlan
     from fatektool.program.archive import Backup
 
@@ -202,27 +204,49 @@ class Cut(Exception):  # the power, not an error
     """The end of the process."""
 
 
-def requests_of(wanted: Backup, seed: int) -> int:
-    """How many requests a whole restore takes."""
-    spare = filled(seed, OTHER_IMAGE)
-    count = 0
+Ends: TypeAlias = "Callable[[list[str]], list[int]]"
+"""From the commands of a restore to the requests at which it ends, counted from 1."""
 
-    def note(_: Seen) -> None:
-        nonlocal count
-        count += 1
 
-    spare.tap.before = note
+def at_each(commands: list[str]) -> list[int]:
+    return [*range(1, len(commands) + 1)]
+
+
+def at_each_kind(commands: list[str]) -> list[int]:
+    """The first of each command before the first write, then the first and the last of each row of one."""
+    first_write = next(at for at, command in enumerate(commands) if command in WRITES)
+    found = {commands.index(each) + 1 for each in commands[:first_write]}
+    for at in range(first_write, len(commands)):
+        if commands[at - 1 : at + 2] != [commands[at]] * 3:
+            found.add(at + 1)
+    return sorted(found)
+
+
+WRITES = ("42", "45", "47", "49", "50")
+ends_of = pytest.mark.parametrize("ends", [at_each_kind, night(at_each)])
+
+
+def commands_of(wanted: Backup) -> list[str]:
+    """The requests of a whole restore."""
+    spare = filled(2, OTHER_IMAGE)
+    commands: list[str] = []
+    spare.tap.before = lambda seen: commands.append(seen.command)
     put(spare, wanted)
-    return count
+    assert len(commands) > 40
+    return commands
+
+
+def test_a_restore_ends_at_each_kind_of_request() -> None:
+    commands = ["53", "46", "46", "53", "50", "50", "50", "4F", "42", "42", "46"]
+    assert at_each_kind(commands) == [1, 2, 5, 7, 8, 9, 10, 11]
 
 
 @pytest.mark.arithmetic
+@ends_of
 @pytest.mark.parametrize("answered", [True, False])
-def test_killed_at_every_request_the_same_again_completes_it(answered: bool) -> None:
+def test_killed_at_any_request_the_same_again_completes_it(ends: Ends, *, answered: bool) -> None:
     wanted = file_of(filled(1))
-    total = requests_of(wanted, 2)
-    assert total > 40
-    for end in range(1, total + 1):
+    for end in ends(commands_of(wanted)):
         spare = filled(2, OTHER_IMAGE)
         left = end
 
@@ -241,11 +265,11 @@ def test_killed_at_every_request_the_same_again_completes_it(answered: bool) -> 
 
 
 @pytest.mark.arithmetic
-def test_cut_at_every_request_says_what_the_plc_holds() -> None:
+@ends_of
+def test_cut_at_any_request_says_what_the_plc_holds(ends: Ends) -> None:
     wanted = file_of(filled(1))
-    total = requests_of(wanted, 2)
     assert wanted.data is not None
-    for end in range(1, total):
+    for end in ends(commands_of(wanted)[:-1]):
         spare = filled(2, OTHER_IMAGE, retries=0)
         before = file_of(spare).data
         assert before is not None
@@ -291,11 +315,11 @@ def test_faults_make_no_wrong_restore(fault: str, seed: int) -> None:
     assert equal(spare, wanted)
 
 
-def test_rollback_puts_both_parts_back() -> None:
+@ends_of
+def test_rollback_puts_both_parts_back(ends: Ends) -> None:
     wanted = file_of(filled(1))
-    total = requests_of(wanted, 2)
     undone = 0
-    for end in range(1, total, 2):
+    for end in ends(commands_of(wanted)[:-1]):
         spare = filled(2, OTHER_IMAGE, retries=0)
         before = file_of(spare)
         left = end
