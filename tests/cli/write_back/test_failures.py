@@ -292,15 +292,15 @@ def test_ctrl_c_at_each_step(bench: Bench, when: str) -> None:
     assert set(codes) <= {6, 130}
 
 
-def fails_once(bench: Bench, patch: pytest.MonkeyPatch) -> None:
-    """Let the trace fail, as on a full disk, behind the third page, or the first write of values."""
+def fails_once(bench: Bench, patch: pytest.MonkeyPatch, error: Exception | None = None) -> None:
+    """Let something fail behind the third page, or the first write of values; by default the trace."""
     writes = 0
 
     def fail(data: bytes) -> None:
         nonlocal writes
         writes += data[3:5] in WRITES
         if data[3:5] in WRITES and writes == (3 if bench.name == "restore" else 1):
-            raise UsageError("cannot write the trace: No space left on device")
+            raise error or UsageError("cannot write the trace: No space left on device")
 
     bench.each_request(patch, lambda _: None, fail)
 
@@ -312,6 +312,15 @@ def test_whatever_fails_half_way_the_safety_copy_is_named(
         fails_once(bench, patch)
         done = bench.run("--yes", "--json")
     assert "cannot write the trace" in done.document("error")["error"]["details"]["cause"]
+    complete(bench, incomplete(bench, done))
+
+
+def test_a_fault_of_fatektool_half_way_is_named_as_one(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+    with monkeypatch.context() as patch:
+        fails_once(bench, patch, RuntimeError("boom"))
+        done = bench.run("--yes", "--json")
+    cause = done.document("error")["error"]["details"]["cause"]
+    assert cause == "a fault of fatektool itself: RuntimeError: boom"
     complete(bench, incomplete(bench, done))
 
 

@@ -178,11 +178,11 @@ def test_a_smaller_plc_is_refused_before_anything_is_read() -> None:
     assert "4F" not in spare.tap.count
 
 
-def test_a_value_that_does_not_take_is_named_and_the_plc_stays_in_stop(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    spare = filled(2, OTHER_IMAGE)
-    wanted = file_of(filled(1))
+FATES = ("values_written", "values_uncertain", "values_old")
+
+
+def keep_r5(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let PLCs acknowledge a write of R5 and not make it."""
     store = SimulatedMemory._store_registers
 
     def all_but_r5(self: SimulatedMemory, area: str, address: int, end: int, values: Any) -> None:
@@ -191,10 +191,42 @@ def test_a_value_that_does_not_take_is_named_and_the_plc_stays_in_stop(
         self.registers["R"][5] = kept
 
     monkeypatch.setattr(SimulatedMemory, "_store_registers", all_but_r5)
+
+
+def test_a_value_that_does_not_take_is_named_and_the_plc_stays_in_stop(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    spare = filled(2, OTHER_IMAGE)
+    wanted = file_of(filled(1))
+    keep_r5(monkeypatch)
     result = put(spare, wanted, run=True)
     assert list(result.not_taken) == ["R5"]
     assert "read-only" in result.not_taken["R5"]
     assert result.mode_after == "stop"
+
+
+def test_a_value_that_did_not_take_is_uncertain_if_the_line_is_lost_later(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """It was acknowledged and read back as another; then the line is lost."""
+    spare = filled(2, OTHER_IMAGE, retries=0)
+    wanted = file_of(filled(1))
+    keep_r5(monkeypatch)
+    has_written = is_cut = False
+
+    def cut(seen: Seen, answer: bytes) -> bytes:
+        nonlocal has_written, is_cut
+        has_written = has_written or seen.command in {"45", "47", "49"}
+        is_cut = is_cut or (has_written and seen.command == "42")
+        return b"" if is_cut else answer
+
+    spare.tap.forge = cut
+    with pytest.raises(RestoreIncomplete) as caught:
+        put(spare, wanted)
+    states = {key: [str(each) for each in elements_in(caught.value.details[key])] for key in FATES}
+    assert "R5" in states["values_uncertain"]
+    assert "R5" not in states["values_written"]
+    assert "R4" in states["values_written"]
 
 
 # --- ends half way ----------------------------------------------------------------------------------------

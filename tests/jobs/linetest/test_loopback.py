@@ -75,6 +75,13 @@ def test_a_late_answer_is_never_taken_for_the_next_one() -> None:
     assert result.heard.late == 2
 
 
+def test_the_last_answer_may_be_late_as_the_ones_before() -> None:
+    """The test waits for it: it is not lost."""
+    late = [(0.6, ONES)]
+    result = once(late, [], late, count=3)
+    assert (result.total.errors["timeout"], result.heard.late) == (3, 2)
+
+
 def test_an_answer_that_comes_twice_is_counted_apart() -> None:
     peer = Script(soon(RUNNING), soon(frame("4E" + "\x7f"), frame("4E" + "\x7f")), soon(frame("4E\x7f\x7f")))
     plan = LoopbackPlan(count=2, sizes=(1, 2), patterns=(Pattern.ONES,))

@@ -38,6 +38,20 @@ def test_another() -> None:
     assert [pages.count(page) for page in ALL] == [2, 1, 2]  # what seems to differ is read twice
 
 
+@pytest.mark.parametrize("swapped", [False, True])
+@pytest.mark.parametrize(
+    ("word", "differs"), [(101, True), (131, True), (134, True), (135, True), (132, False)]
+)
+def test_length_and_checksum_of_the_code_are_compared(word: int, differs: bool, swapped: bool) -> None:
+    """Of the header these alone: 132, the free words, follows from them."""
+    bench = Monitored(program=program_of(IMAGE, swapped=swapped))
+    page, place = divmod(2 * word, 128)
+    data = bytearray(bench.device.pages[page])
+    data[place] ^= 1
+    bench.device.pages[page] = bytes(data)
+    assert compared(bench).different == ([page] if differs else [])
+
+
 def test_it_gives_out_a_part() -> None:
     """Up to a page: what is the same is said, and that the rest could not be compared."""
     bench = Monitored()
