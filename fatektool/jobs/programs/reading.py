@@ -33,6 +33,11 @@ MOST_PASSES: Final = 5
 PAST_THE_END: Final = {0x2, 0xA}
 """The error codes of a page that the PLC does not have: illegal value, illegal address."""
 
+_PART_REFUSED: Final = (
+    "it gave the pages before: somebody may be loading a program, or a part of it may have a password; run "
+    "it again, or use the engineer's project file (.pdw), which 'fatektool listing' reads"
+)
+
 
 @dataclass(frozen=True, slots=True)
 class ProgramReading:
@@ -118,6 +123,7 @@ def read_all_pages(
     if refusal is not None:
         past_the_end = refusal.code in PAST_THE_END and is_whole(pages, words)
         if not past_the_end or gives_page(plc, last):
+            refusal.hint = _PART_REFUSED if pages else refusal.hint
             raise refusal
         progress(phase, len(pages), len(pages))
     return pages

@@ -13,6 +13,7 @@ from fatektool.jobs.programs.safekeeping import require_ladder
 from fatektool.jobs.programs.verify import verify
 from fatektool.program.archive import Backup
 from fatektool.program.image import Program
+from fatektool.protocol.plc_errors import PROGRAM_REFUSED
 from fatektool.simulator.refusal import Refusal
 from tests.program.samples import backup as backup_of
 from tests.program.samples import header, program
@@ -53,6 +54,25 @@ def test_an_fbs_image_is_backed_up_and_found_again(model: str, pages: int, *, sw
     found = verify(one.plc, kept.program)
     assert found.same
     assert not found.b_has_more
+
+
+@pytest.mark.parametrize(("code", "page"), [(0x4, 1), (0x4, 7), (0xA, 5), (0x2, 1)])
+def test_a_page_in_the_middle_that_is_refused_is_no_plc_that_refuses_its_program(
+    code: int, page: int
+) -> None:
+    bench = Bench(program(400))
+    refusing(bench.device, page, code)
+    with pytest.raises(PlcRefused, match=f"refused to read program page {page} ") as caught:
+        backup(bench.plc)
+    assert str(caught.value.hint).startswith("it gave the pages before: ")
+
+
+def test_a_plc_that_refuses_its_first_page_refuses_its_program() -> None:
+    bench = Bench(program(400))
+    refusing(bench.device, 0, 0x4)
+    with pytest.raises(PlcRefused, match="refused to read program page 0 ") as caught:
+        backup(bench.plc)
+    assert caught.value.hint == PROGRAM_REFUSED
 
 
 @pytest.mark.parametrize("code", [0x2, 0xA])
