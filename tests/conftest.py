@@ -21,6 +21,7 @@ import pytest
 from hypothesis import HealthCheck, is_hypothesis_test, settings
 
 from tests.compiling import import_from_the_end, keep_compiled
+from tests.in_memory import keep_in_memory
 from tests.night import AT_NIGHT, FEW, examples
 
 if TYPE_CHECKING:
@@ -52,6 +53,7 @@ def _looks_for_new_cases(config: pytest.Config) -> bool:
 def pytest_configure(config: pytest.Config) -> None:
     if not hasattr(config, "workerinput"):
         keep_compiled()
+        keep_in_memory()
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # in the background; tests interrupt processes
         signal.signal(signal.SIGINT, signal.default_int_handler)
     random = _looks_for_new_cases(config)

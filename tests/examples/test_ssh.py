@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import pytest
 
+from tests.forks.shell import path as shell_path
 from tests.root import ROOT
 
 if TYPE_CHECKING:
@@ -68,11 +69,10 @@ def _key(path: Path) -> None:
 def _server(folder: Path) -> Iterator[int]:
     """An sshd for each connection of a listening socket (``sshd -i``), so that no port is guessed."""
     config = folder / "sshd_config"
-    venv = Path(sys.executable).parent
     config.write_text(
         f"HostKey {folder}/host_key\nAuthorizedKeysFile {folder}/user_key.pub\nPidFile none\nUsePAM no\n"
         f"StrictModes no\nPasswordAuthentication no\nKbdInteractiveAuthentication no\nPermitRootLogin yes\n"
-        f'SetEnv "PATH={venv}:/usr/bin:/bin" "FATEKTOOL_LOCK_DIR={folder}"\nLogLevel ERROR\n'
+        f'SetEnv "PATH={shell_path()}" "FATEKTOOL_LOCK_DIR={folder}"\nLogLevel ERROR\n'
     )
     with socket.create_server(("127.0.0.1", 0)) as listening:
         port = listening.getsockname()[1]

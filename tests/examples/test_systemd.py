@@ -14,7 +14,8 @@ if TYPE_CHECKING:
 
 
 AGAIN = """
-for name in snapshot fleet snapshot fleet; do systemctl start "fatektool-$name.service"; done
+systemctl start fatektool-snapshot.service
+systemctl start fatektool-fleet.service
 systemctl start --no-block fatektool-fleet.service
 systemctl start fatektool-snapshot.service fatektool-fleet.service
 systemctl list-timers --no-pager --no-legend --all > /out/timers

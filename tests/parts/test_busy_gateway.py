@@ -21,6 +21,7 @@ from fatektool.simulator.listen.pty import PTY_SUPPORTED
 from fatektool.simulator.listen.servers import Server, running
 from fatektool.transport.lock import PortLock
 from tests.cli.many.fleet.gateway import plcs_of
+from tests.guard import GUARD_S
 from tests.parts.gateways import ser2net
 from tests.parts.programs import needs
 from tests.program.samples import program
@@ -43,6 +44,9 @@ class OneAtATime:
         plc: address of the server.
         late: how many are turned away after a connection ended, before the next one is served.
         says: what others are told before they are closed; None refuses them with a reset.
+
+    Attributes:
+        noticed: set when the end of the last connection was noticed.
     """
 
     def __init__(self, plc: str, late: float, says: bytes | None) -> None:
@@ -52,6 +56,7 @@ class OneAtATime:
         self._says = says
         self._to_turn_away = 0.0
         self._busy = threading.Lock()
+        self.noticed = threading.Event()
         self.served = self.refused = 0
         self._listening = socket.create_server(("127.0.0.1", 0))
         self.target = f"tcp://127.0.0.1:{self._listening.getsockname()[1]}"
@@ -76,6 +81,7 @@ class OneAtATime:
                 client.close()
                 continue
             self.served += 1
+            self.noticed.clear()
             threading.Thread(target=self._serve, args=(client,), daemon=True).start()
 
     def _serve(self, client: socket.socket) -> None:
@@ -85,6 +91,7 @@ class OneAtATime:
             _pump(client, plc)
             self._to_turn_away = self._late
         self._busy.release()
+        self.noticed.set()
 
 
 def _pump(source: socket.socket, sink: socket.socket) -> None:
@@ -141,6 +148,7 @@ def test_commands_one_behind_the_other_wait_for_the_gateway(cli: Cli, says: byte
         for station in STATIONS:
             done = cli("status", "-p", gateway.target, "-s", station, "--timeout", "2")
             assert done.code == 0, done.err
+            assert gateway.noticed.wait(GUARD_S)
     assert gateway.served == 3
     assert gateway.refused >= 4
 

@@ -76,7 +76,7 @@ def taking_turns(target: str, exchanges: int, locks: tuple[Path, Path]) -> list[
 @pytest.mark.parametrize(
     "exchanges",
     [
-        4_000,
+        1_200,
         pytest.param(80_000, marks=pytest.mark.slow, id="an hour at 9600 baud"),
     ],
 )

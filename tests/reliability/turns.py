@@ -28,7 +28,7 @@ def main(target: str, exchanges: int, seed: int) -> None:
     while done < exchanges:
         turns += 1
         with connect(target, timeout_s=600, lock_wait_s=600) as plc:
-            for _ in range(random.randrange(1, 120)):
+            for _ in range(random.randrange(1, 40)):
                 first = random.randrange(REGISTERS - 8)
                 count = random.randrange(1, 8)
                 try:

@@ -67,7 +67,7 @@ def test_a_client_that_goes_leaves_the_others() -> None:
 def test_a_client_that_does_not_read_is_held_back(baud: float | None) -> None:
     with tcp(baud=baud) as (_, listener), connected(listener) as client, connected(listener) as other:
         for buffer in (socket.SO_SNDBUF, socket.SO_RCVBUF):
-            client.setsockopt(socket.SOL_SOCKET, buffer, 1 << 18)
+            client.setsockopt(socket.SOL_SOCKET, buffer, 1 << 15)
         requests = frame("4F0000") * 1000
         sent = 0
         while select.select([], [client], [], 0.2)[1]:
