@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import errno
+import json
 import os
 import re
 import shlex
 from itertools import count
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -18,7 +20,6 @@ from tests.cli.write_back.writers import WRITERS, WRITES, Bench
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
 
     from tests.cli.running import Cli, Done
 
@@ -356,6 +357,21 @@ def test_without_a_safety_copy_that_is_said(bench: Bench) -> None:
     assert re.search(f"  previous {bench.writer.copied} +not saved\n", done.err)
     assert bench.copies == []
     complete(bench, last(done))
+
+
+def test_the_copy_of_the_first_run_is_used_again_wherever_it_is(bench: Bench) -> None:
+    """Only that has the previous contents; one of the second run would have a half."""
+    with pytest.MonkeyPatch.context() as patch:
+        bench.cut(patch, 1)
+        assert bench.run("--yes", "--safety-dir", "first", *QUICK).code == 6
+    done = bench.run("--yes", "--safety-dir", "second", "--json")
+    assert (done.code, bench.held) == (0, bench.after)
+    (copy,) = bench.place.glob("first/*")
+    assert not [*bench.place.glob("second/*")]
+    named = json.loads(done.out).get(bench.writer.key)  # none if the one write was made, and its answer lost
+    assert named is None or Path(named).samefile(copy)
+    done = bench.cli(*bench.writer.undo, copy, "-p", bench.target, "--yes", "--safety-dir", "third")
+    assert (done.code, bench.held) == (0, bench.before)
 
 
 def test_the_record_is_of_this_write_alone(bench: Bench) -> None:
