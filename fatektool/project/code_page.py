@@ -25,6 +25,9 @@ SINGLE: Final = {
 DOUBLE: Final = {"cp932": (0x88, 0x97), "cp936": (0xB0, 0xD7), "cp950": (0xA4, 0xC6)}
 """Code pages with two bytes, and the first bytes of common ideographs."""
 CODE_PAGES: Final = ("cp1250", "cp1252", "cp932", "cp936", "cp950", "cp1254")
+NAMED: Final = ("cp874", "cp949", "cp1251", "cp1253", "cp1255", "cp1256", "cp1257", "cp1258")
+"""Those of Thai, Korean, Cyrillic, Greek, Hebrew, Arabic and Persian, Baltic and Vietnamese: never chosen, as
+their letters look like words in other pages too, but taken from the user."""
 LAST_RESORT: Final = "latin-1"
 _SIGNS: Final = "°²³µ±×÷§·–—…‘’“”€"  # noqa: RUF001  # what is meant
 _VOWELS: Final = "aeiouyáéíóú"
@@ -66,8 +69,9 @@ def code_page(name: str) -> str:
     Raises:
         UsageError: it is unknown.
     """
-    if name not in {*CODE_PAGES, LAST_RESORT}:
-        raise UsageError(f"unknown code page {name!r}: expected {', '.join(CODE_PAGES)} or {LAST_RESORT}")
+    known = (*CODE_PAGES, *NAMED, LAST_RESORT)
+    if name not in known:
+        raise UsageError(f"unknown code page {name!r}: expected {', '.join(known[:-1])} or {known[-1]}")
     return name
 
 

@@ -91,6 +91,22 @@ def test_one_comment_may_be_enough(page: str, text: str) -> None:
     assert (found.code_page, found.elements["X0"]) == (page, text)
 
 
+@pytest.mark.parametrize(
+    ("page", "text"),
+    [
+        ("cp1251", "Насос 1"),  # noqa: RUF001  # Cyrillic
+        ("cp1253", "Αντλία"),
+        ("cp1256", "پمپ آب"),
+        ("cp1258", "Bơm"),
+        ("cp874", "ปั๊มน้ำ"),
+        ("cp949", "펌프 기동"),
+    ],
+)
+def test_a_code_page_that_must_be_named(page: str, text: str) -> None:
+    data = project(IMAGE, FBS, elements={"X0": text.encode(page)})
+    assert Project.parse(data, encoding=code_page(page)).comments.elements == {"X0": text}
+
+
 def test_a_comment_cut_within_a_character() -> None:
     text = "AB1号电机正转启动了".encode("cp936")[:16]
     elements = {"X0": text, "X1": "停止".encode("cp936")}

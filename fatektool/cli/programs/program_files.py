@@ -39,7 +39,7 @@ def encoding_option(function: F) -> F:
         "--encoding",
         metavar="PAGE",
         callback=checked,
-        help="Code page of a project's comments: cp1250, cp1252, cp932, cp936, cp950, cp1254.",
+        help="Code page of a project's comments: cp1250 to cp1258, cp874, cp932, cp936, cp949, cp950.",
     )(function)
 
 
