@@ -10,6 +10,7 @@ import re
 import shutil
 import subprocess
 import sys
+import threading
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,9 +19,10 @@ import pytest
 from fatektool.cli.shared.streams import Unheard
 from fatektool.program.archive import Backup, load_backup
 from fatektool.simulator.build import build_simulation
-from tests.cli.running import OLD, Done, Press, environment, one_line, process, started
+from tests.cli.running import OLD, Done, Press, environment, one_line, process, served, started
 from tests.forks.command import COMMAND, PIPE, Forked
 from tests.forks.shell import path as shell_path
+from tests.guard import GUARD_S
 
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer
@@ -301,6 +303,31 @@ def test_a_restore_goes_on_when_nobody_hears_it(press: Press) -> None:
             done = redirected("restore", file, "-p", press.target, "--yes", "-v", redirect=redirect)
             assert done.code == code
             assert press.program == load_backup(file).program
+
+
+@pytest.mark.usefixtures("buffering")
+def test_a_restore_goes_on_when_its_terminal_is_gone(press: Press) -> None:
+    """Under nohup, say: from the first page on, bar, messages and result have no place any more."""
+    asked, gone = threading.Event(), threading.Event()
+    master, slave = os.openpty()
+    with served(OLD) as door:
+        device = door.simulation.plcs[1]
+        read = device.read_page
+
+        def read_page(page: int) -> bytes:
+            asked.set()
+            assert gone.wait(GUARD_S)
+            return read(page)
+
+        device.read_page = read_page  # type: ignore[method-assign]  # to see it, and to wait
+        words = ("restore", press.new, "-p", door.target, "--yes")
+        with Forked(words, stdin=slave, stdout=slave, stderr=slave, environment=environment()) as command:
+            os.close(slave)
+            assert asked.wait(GUARD_S)
+            os.close(master)
+            gone.set()
+            assert command.wait() == 5
+        assert door.pages == load_backup(press.new).program.pages
 
 
 def test_a_fleet_goes_on_when_its_words_are_lost(press: Press) -> None:
