@@ -1,6 +1,6 @@
-"""What does ``--low-latency`` save? Jobs behind a USB adapter that holds back what it received, and not.
+"""What does ``--low-latency`` save? Jobs over a USB adapter that delays received bytes, and over another.
 
-A USB adapter hands on received bytes when a packet is full or when its timer runs out, after 16 ms unless
+A USB adapter passes received bytes on when a packet is full or when its timer runs out, after 16 ms unless
 somebody says otherwise. ``--low-latency`` has the driver say 1 ms. A pty has no such driver, so the simulated
 adapter (``simulate --latency-timer``) does what a real one would do:
 
@@ -10,7 +10,7 @@ adapter (``simulate --latency-timer``) does what a real one would do:
 
 Times are from the first request to the last answer, on a paced line, of a PLC that takes 5 ms to answer.
 *Adds* is what the adapter adds to each exchange: the time beside that of ``none``, by their number. The ratio
-is off to on. As an answer comes at a tick, and the next request right behind it, exchanges last whole steps.
+is off to on. As an answer comes at a tick, and the next request right after it, exchanges last whole steps.
 
 Usage: python bench/latency.py [BAUD …]
 """
@@ -85,8 +85,8 @@ def measured(plc: Plc, job: Job) -> Took:
     return Took((counters.exchanges - before) / len(took), mean(took))
 
 
-def behind(adapter: str, baud: int, folder: Path) -> dict[str, Took]:
-    """All jobs behind one adapter."""
+def over(adapter: str, baud: int, folder: Path) -> dict[str, Took]:
+    """All jobs over one adapter."""
     line = ["--baud", str(baud), "--latency-timer", str(ADAPTERS[adapter]), "--scan-ms", str(SCAN_MS)]
     link = str(folder / "plc")
     with (
@@ -112,7 +112,7 @@ def main() -> None:
     """Print a row a job and baud rate."""
     for baud in [int(word) for word in sys.argv[1:]] or [9600, 38400, 115200]:
         with tempfile.TemporaryDirectory() as folder:
-            found = {adapter: behind(adapter, baud, Path(folder)) for adapter in ADAPTERS}
+            found = {adapter: over(adapter, baud, Path(folder)) for adapter in ADAPTERS}
         for job in JOBS:
             print(row(baud, job.name, {adapter: jobs[job.name] for adapter, jobs in found.items()}))
 

@@ -27,13 +27,13 @@ LOOK_S = 0.005
 FEW, MANY = 100, 600
 REGISTERS = "R0-R999"
 JOBS = (
-    ("start", "--version"),
-    ("status", "status -p {plc}"),
-    ("read", f"read {REGISTERS} -p {{plc}}"),
-    ("backup", "backup x.json --force -p {plc}"),
-    ("verify", "verify x.json -p {plc}"),
-    (f"{FEW} exchanges", f"loopback --count {FEW} -p {{plc}}"),
-    (f"{MANY} exchanges", f"loopback --count {MANY} -p {{plc}}"),
+    ("start (`--version`)", "--version"),
+    ("`status`", "status -p {plc}"),
+    (f"`read {REGISTERS}`", f"read {REGISTERS} -p {{plc}}"),
+    ("`backup`, 207 pages", "backup x.json --force -p {plc}"),
+    ("`verify`", "verify x.json -p {plc}"),
+    (f"`loopback`, {FEW} exchanges", f"loopback --count {FEW} -p {{plc}}"),
+    (f"`loopback`, {MANY} exchanges", f"loopback --count {MANY} -p {{plc}}"),
 )
 
 

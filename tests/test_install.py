@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import sys
+from runpy import run_path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -33,6 +34,14 @@ def test_the_virtual_environment_is_before_the_commands_that_need_it() -> None:
     before, _, after = README.partition("python3 -m venv .venv && . .venv/bin/activate")
     assert "python3 -m pip install" not in before
     assert after.count("python3 -m pip install") == 2
+
+
+def test_the_page_has_the_table_of_the_bench() -> None:
+    """The same jobs, so that one command makes it again."""
+    text = (ROOT / "docs" / "install.md").read_text(encoding="utf-8")
+    jobs = run_path(str(ROOT / "bench" / "small.py"))["JOBS"]
+    rows = re.findall(r"^\| (.*?) \| [\d.]+ s \| \d+ ms \| \d+ MiB \|$", text, re.MULTILINE)
+    assert rows == [name for name, _ in jobs]
 
 
 def done(command: list[str], folder: Path, environment: dict[str, str]) -> str:

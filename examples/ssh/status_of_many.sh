@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The status of the PLCs behind many computers, over SSH, eight computers at once:
+# The status of the PLCs at many computers, over SSH, eight computers at once:
 #
 #   examples/ssh/status_of_many.sh hosts.txt
 #

@@ -465,7 +465,7 @@ local function add_checksum(tree, range, got, expected, field, digits)
 end
 
 -- FACON frames: STX, station, command, data, LRC, ETX -----------------------------------------------------
--- STX begins a frame afresh wherever it is, so that a good frame behind a broken one is seen.
+-- STX begins a frame afresh wherever it is, so that a good frame after a broken one is seen.
 
 local function add_facon_frame(tvb, at, stop, pinfo, tree, context)
   local range = tvb(at, stop - at)
