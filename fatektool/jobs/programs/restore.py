@@ -256,9 +256,8 @@ def carry_out(
         DataError: this is not the PLC that the plan was made of; nothing was written.
         PlcError, LineError: nothing was changed; or all was, and RUN is refused; or it was rolled back.
     """
-    running = plan.running
-    warnings = plan.warnings
-    path, data = None, None
+    running, warnings = plan.running, plan.warnings
+    path, data, written = None, None, len(plan.pages)
     if plan.changes:
         rewrite = Rewrite(plc, plan.wanted, plan.present, plan.pages, running=running)
         data = None if plan.data is None else DataRewrite(plc, plan.data)
@@ -272,6 +271,7 @@ def carry_out(
         )
         path = write_back(plc, whole, agree, mark=mark, progress=progress)
         running = bool(rewrite.running)
+        written -= len(rewrite.left)
         warnings += rewrite.warnings
     elif plan.options.run and not running:
         agree(None)
@@ -280,7 +280,7 @@ def carry_out(
         _run(plc)
         running = True
     return RestoreResult(
-        pages_written=len(plan.pages),
+        pages_written=written,
         pages_equal=len(plan.wanted.pages) - len(plan.comparison.pages),
         verified=True,
         safety_backup=None if path is None else str(path),

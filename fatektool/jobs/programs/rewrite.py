@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.errors import DataError, LineError, PlcError, PlcNotReady, PlcRefused
+from fatektool.jobs.programs.reading import PAST_THE_END
 from fatektool.program.image import ranges
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ class Rewrite:
         running: True if the PLC runs, and is to be stopped.
 
     Attributes:
+        left: pages past the end of what the PLC takes, which it refused, and which it has as they are to be.
         running: True if the PLC is in RUN, as far as is known; None if it did not answer.
     """
 
@@ -53,6 +55,7 @@ class Rewrite:
         self._again: list[int] = []
         self._foreign: list[int] = []
         self._went_to_run = False
+        self.left: list[int] = []
 
     @property
     def before(self) -> str:
@@ -81,6 +84,8 @@ class Rewrite:
                 f"; page {ranges(self._foreign)} held neither the previous nor the new program: was the PLC "
                 f"replaced, or is somebody else loading a program? The safety backup may be of another one"
             )
+        if self.left:
+            found.append(f"the PLC refused page {ranges(self.left)}, which it has as on file already")
         if self._went_to_run:
             then = "it is in RUN now" if self.running else "it was stopped again"
             found.append(f"the PLC went to RUN while its program was written, as after a restart: {then}")
@@ -228,11 +233,19 @@ class Rewrite:
             begin()
             try:
                 self._plc.write_pages([(number, program.pages[number]) for number in pages[done:]], taken)
-            except PlcRefused:
-                self._holds[pages[done]] = before
-                if refused_at == done or not self._keep_stopped():
+            except PlcRefused as refusal:
+                page = pages[done]
+                self._holds[page] = before
+                if refused_at != done and self._keep_stopped():
+                    refused_at = done
+                elif (
+                    refusal.code in PAST_THE_END and self._present.program.pages[page] == program.pages[page]
+                ):
+                    self._holds[page] = state  # read back like all others
+                    self.left.append(page)
+                    done += 1
+                else:
                     raise
-                refused_at = done
 
     def _prove(self, program: Program, state: str, progress: Progress) -> None:
         wrong = self._read_back(program, range(len(program.pages)), "reading back", progress)

@@ -18,6 +18,7 @@ from fatektool.errors import (
 )
 from fatektool.jobs.programs.restore import RestoreOptions, RestoreResult, restore
 from fatektool.program.archive import load_backup
+from fatektool.simulator.refusal import Refusal
 from tests.night import seeds
 from tests.program.samples import backup, changed, program
 from tests.rigs import READ_PAGE, RUN_STOP, WRITE_PAGE, Bench, Seen
@@ -392,6 +393,41 @@ def test_a_later_page_is_refused(tmp_path: Path, page: int) -> None:
     assert caught.value.details["pages_old"] == list(range(page, PAGES))
     told_right(caught.value, bench)
     finish(bench, tmp_path, caught.value, written=list(range(page, PAGES)))
+
+
+@pytest.mark.parametrize("code", [0x2, 0xA])
+def test_pages_past_the_end_that_are_refused_and_equal_are_left(tmp_path: Path, code: int) -> None:
+    """A PLC that answers reads past its end, but takes no writes there."""
+    bench = Bench(OLD)
+    wanted = changed(OLD, 2, 5)
+    refuse_from(bench, 6, code)
+    result = put(bench, tmp_path, wanted=wanted)
+    assert bench.pages == wanted.pages
+    assert (result.pages_written, result.verified) == (6, True)
+    assert result.warnings == ("the PLC refused page 6-7, which it has as on file already",)
+
+
+@pytest.mark.parametrize(("code", "page"), [(0xA, 5), (0x4, 6), (0x3, 6)])
+def test_a_refused_page_that_differs_or_is_not_past_the_end_is_an_error(
+    tmp_path: Path, code: int, page: int
+) -> None:
+    bench = Bench(OLD)
+    refuse_from(bench, page, code)
+    with pytest.raises(RestoreIncomplete, match=f"refused to write program page {page} ") as caught:
+        put(bench, tmp_path, wanted=changed(OLD, 2, 5))
+    assert caught.value.details["pages_written"] == list(range(page))
+
+
+def refuse_from(bench: Bench, first: int, code: int) -> None:
+    """The PLC refuses to have the pages from ``first`` on written."""
+    write = bench.device.write_page
+
+    def write_page(page: int, content: bytes) -> None:
+        if page >= first:
+            raise Refusal(code)
+        write(page, content)
+
+    bench.device.write_page = write_page  # type: ignore[method-assign]
 
 
 # --- rollback -------------------------------------------------------------------------------------------
