@@ -118,8 +118,7 @@ def print_bytes(data: bytes) -> None:
     """Print the bytes of a file on standard output, which is its only place: it must not be closed."""
     out = sys.stdout
     out.flush()
-    if isinstance(out, Output) and out.stands_in:
-        out.lose(OSError(errno.EBADF, os.strerror(errno.EBADF)))
+    _require_open()
     try:
         out.buffer.write(data)
         out.buffer.flush()
@@ -127,6 +126,20 @@ def print_bytes(data: bytes) -> None:
         if not isinstance(out, Output):
             raise
         out.lose(error)
+
+
+def print_text(text: str) -> None:
+    """Print the text of a file on standard output, in the same way."""
+    _require_open()
+    sys.stdout.write(text)
+    sys.stdout.flush()
+
+
+def _require_open() -> None:
+    """Take it for a loss if standard output is closed."""
+    out = sys.stdout
+    if isinstance(out, Output) and out.stands_in:
+        out.lose(OSError(errno.EBADF, os.strerror(errno.EBADF)))
 
 
 def mend_streams() -> None:

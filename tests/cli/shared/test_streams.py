@@ -266,6 +266,10 @@ def test_a_closed_stdout_is_as_dev_null_but_for_a_file(press: Press, others: str
         "check --expect any": 0,
         "backup -": 5,
         "backup - --json": 5,
+        "snapshot R0": 5,
+        "snapshot R0 -o - --format csv": 5,
+        "snapshot R0 -o r0.json --json": 0,
+        "read R0": 0,
     }.items():
         done = redirected(*words.split(), "-p", press.target, redirect=f">&-{others}")
         assert done.code == code, words

@@ -19,6 +19,7 @@ from fatektool.cli.shared.options import PATH, completing, standard
 from fatektool.cli.shared.output import elements_bar, passed
 from fatektool.cli.shared.places import require_folder_for, require_free
 from fatektool.cli.shared.report import report_option, write_snapshot_report
+from fatektool.cli.shared.streams import print_text
 from fatektool.counts import counted
 from fatektool.errors import PlcError, UsageError
 from fatektool.files.atomic import write_whole
@@ -149,10 +150,10 @@ def take_command(
         voice.say(f"appended to {append}: {values}, took {took}")
     if report is not None:
         write_snapshot_report(report, snapshot, append or folder)
-    if voice.json:
+    if to_stdout:
+        print_text(as_json(snapshot) if voice.json else text)
+    elif voice.json:
         click.echo(as_json(snapshot), nl=False)
-    elif to_stdout:
-        click.echo(text, nl=False)
     warn_of(snapshot.errors, voice, snapshot.not_asked)
     return PlcError.exit_code if snapshot.errors else 0
 
