@@ -17,6 +17,8 @@ IMAGES = re.compile(
 )
 """No word of FATEK's, and none that says what it means. ``floor(`` is a function."""
 
+LONGEST = 130
+
 FILES = [
     *Path(fatektool.__file__).parent.rglob("*.py"),
     *Path(fatektool.__file__).parent.rglob("*.json"),
@@ -40,3 +42,15 @@ def test_plain_words() -> None:
     ]
     if found:
         pytest.fail("\n".join(found))
+
+
+def test_lines_of_prose_are_not_longer_than_an_editor_shows() -> None:
+    """Tables, code and what a command prints are as long as they are."""
+    found = []
+    for path in [each for each in FILES if each.suffix == ".md" and each.name != "CHANGELOG.md"]:
+        in_code = False
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+            in_code ^= line.startswith("```")
+            if len(line) > LONGEST and not in_code and not line.startswith("|"):
+                found.append(f"{path.relative_to(ROOT)}:{number}: {len(line)}")
+    assert not found
