@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shlex
 import shutil
 import signal
 import subprocess
@@ -18,6 +19,7 @@ from fatektool.cli import run as run_in_process
 from fatektool.cli.app import app
 from fatektool.jobs.programs.backup import backup
 from fatektool.program.archive import save_backup
+from tests.cli.running import Cli, Done
 from tests.forks.shell import path as shell_path
 from tests.project.files import ELEMENTS, IMAGE, project_file
 from tests.rigs import simulated
@@ -157,26 +159,37 @@ def test_examples_are_for_each_shell() -> None:
             assert not re.search(r"[$\\`]", example), example
 
 
+def in_a_shell(text: str, environment: dict[str, str]) -> Done:
+    done = subprocess.run(["bash", "-c", text], env=environment, capture_output=True, text=True, check=False)
+    return Done(done.returncode, done.stdout, done.stderr)
+
+
+def serves_until_it_is_ended(text: str, environment: dict[str, str]) -> bool:
+    words = ["bash", "-c", f"exec {text}"]
+    with subprocess.Popen(words, env=environment, stdout=subprocess.PIPE, text=True) as server:
+        assert server.stdout is not None
+        listens = server.stdout.readline().startswith("listening ")
+        server.send_signal(signal.SIGTERM)
+        server.communicate()
+    return listens and server.returncode == 0
+
+
 @pytest.mark.skipif(shutil.which("bash") is None, reason="the examples are for a shell")
-def test_the_examples_run_as_they_are_printed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_examples_run_as_they_are_printed(
+    tmp_path: Path, cli: Cli, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In this process what has only words, quoted or not; in a shell what needs one."""
     monkeypatch.chdir(tmp_path)
     fill(tmp_path)
+    monkeypatch.setattr("time.sleep", lambda _: None)  # between the rounds of watch
     environment = os.environ | {"PATH": shell_path(), "FATEKTOOL_LOCK_DIR": str(tmp_path)}
     failed = []
     for text in examples():
         if "fatektool simulate" in text:
-            words = ["bash", "-c", f"exec {text}"]
-            server = subprocess.Popen(words, env=environment, stdout=subprocess.PIPE, text=True)
-            assert server.stdout is not None
-            assert server.stdout.readline().startswith("listening ")
-            server.send_signal(signal.SIGTERM)
-            server.communicate()
-            assert server.returncode == 0
+            assert serves_until_it_is_ended(text, environment)
             continue
-        done = subprocess.run(
-            ["bash", "-c", text], env=environment, capture_output=True, text=True, check=False
-        )
-        differs = done.returncode == 1 and "diff" in text  # the answer, and no error
-        if done.returncode and not differs:
-            failed.append(f"{text}\n  {done.returncode}: {done.stderr[:300]}{done.stdout[:200]}")
+        done = in_a_shell(text, environment) if re.search(r"[|$]", text) else cli(*shlex.split(text)[1:])
+        differs = done.code == 1 and "diff" in text  # the answer, and no error
+        if done.code and not differs:
+            failed.append(f"{text}\n  {done.code}: {done.err[:300]}{done.out[:200]}")
     assert not failed, "\n".join(failed)
