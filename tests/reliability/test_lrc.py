@@ -10,12 +10,13 @@ from fatektool.errors import FatektoolError
 from fatektool.jobs.programs.backup import backup
 from fatektool.protocol.fatek.facon.codec import parse_frame
 from fatektool.transport.base import LineSettings
+from tests.night import examples
 from tests.protocol.decoding import framed
 from tests.reliability.damage import DAMAGES, count
 from tests.rigs import OLD, Rig
 
 ANSWERS = 2000
-BACKUPS = 100
+BACKUPS = examples(100)
 ODD = ("bit errors, 1 in 1000", "bit errors, 1 in 200", "bit errors, 1 in 50")
 """Damages that leave each byte they hit with an odd number of wrong bits."""
 

@@ -18,34 +18,43 @@ if TYPE_CHECKING:
 
     from tests.cli.running import Cli
 
-SCRIPTS = {
+LOADED = {
+    "bash": 'eval "$(fatektool completion bash)"',
+    # compsys needs a terminal: what the script hands to it is printed instead.
+    "zsh": """
+compdef() { : }
+_describe() { print -rl -- $completions_with_descriptions }
+compadd() { print -rl -- $completions }
+_path_files() { print -r -- FILES }
+eval "$(fatektool completion zsh)"
+""",
+    "fish": "fatektool completion fish | source",
+    "powershell": "Invoke-Expression (& fatektool completion powershell | Out-String)",
+}
+"""Loads the completion into a shell."""
+
+LINE = {
     "bash": """
-eval "$(fatektool completion bash)"
-COMP_WORDS=({words} '{last}'); COMP_CWORD={number}
+COMPREPLY=(); COMP_WORDS=({words} '{last}'); COMP_CWORD={number}
 _fatektool_completion fatektool
 printf '%s\\n' "${{COMPREPLY[@]}}"
 """,
-    # compsys needs a terminal: what the script hands to it is printed instead.
     "zsh": """
-compdef() {{ : }}
-_describe() {{ print -rl -- $completions_with_descriptions }}
-compadd() {{ print -rl -- $completions }}
-_path_files() {{ print -r -- FILES }}
-eval "$(fatektool completion zsh)"
 words=({words} '{last}'); CURRENT={number}+1
 _fatektool_completion
 """,
     "fish": """
-fatektool completion fish | source
 complete -C '{words} {last}'
 """,
     "powershell": """
-Invoke-Expression (& fatektool completion powershell | Out-String)
 $line = '{words} {last}'
 (TabExpansion2 -inputScript $line -cursorColumn $line.Length).CompletionMatches |
   ForEach-Object {{ "$($_.CompletionText)`t$($_.ToolTip)" }}
 """,
 }
+"""Asks for what completes a line, as a key would."""
+
+BETWEEN = "=== the next line ==="
 PROGRAMS = {"powershell": "pwsh"}
 
 ASKED = [
@@ -77,11 +86,14 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def asked(shell: str, line: str) -> list[tuple[str, str]]:
-    """What a shell offers for a line: values with descriptions."""
+def asked(shell: str, lines: list[str]) -> list[list[tuple[str, str]]]:
+    """What one shell offers for each line: values with descriptions."""
     program = PROGRAMS.get(shell, shell)
-    words, _, last = line.rpartition(" ")
-    script = SCRIPTS[shell].format(words=words, last=last, number=len(words.split()))
+    script = LOADED[shell]
+    for line in lines:
+        words, _, last = line.rpartition(" ")
+        script += LINE[shell].format(words=words, last=last, number=len(words.split()))
+        script += f"echo '{BETWEEN}'\n"
     flags = {"bash": ["--norc", "-c"], "zsh": ["-f", "-c"], "fish": ["--no-config", "-c"]}
     environment = os.environ | {"PATH": shell_path()}
     done = subprocess.run(
@@ -90,8 +102,10 @@ def asked(shell: str, line: str) -> list[tuple[str, str]]:
     )  # fmt: skip
     assert not done.stderr, done.stderr
     mark = ":" if shell == "zsh" else "\t"
-    pairs = [each.partition(mark) for each in done.stdout.splitlines() if each]
-    return [(value.strip(), words.strip()) for value, _, words in pairs]
+    *offered, rest = done.stdout.split(f"{BETWEEN}\n")
+    assert (len(offered), rest) == (len(lines), "")
+    pairs = [[each.partition(mark) for each in text.splitlines() if each] for text in offered]
+    return [[(value.strip(), words.strip()) for value, _, words in of_line] for of_line in pairs]
 
 
 @pytest.mark.parametrize("shell", SHELLS)
@@ -99,11 +113,14 @@ def test_a_real_shell_completes(place: Path, shell: str) -> None:
     if shutil.which(PROGRAMS.get(shell, shell)) is None:
         pytest.skip(f"{shell} is not installed")
     assert place.is_dir()
-    for line, expected in ASKED:
-        assert sorted(value for value, _ in asked(shell, line)) == sorted(expected), line
+    *offered, restore, status = asked(
+        shell, [*(line for line, _ in ASKED), "fatektool resto", "fatektool sta"]
+    )
+    for (line, expected), found in zip(ASKED, offered, strict=True):
+        assert sorted(value for value, _ in found) == sorted(expected), line
     if shell != "bash":  # which shows values alone
-        assert dict(asked(shell, "fatektool resto"))["restore"] == WHOLE
-        assert dict(asked(shell, "fatektool sta"))["status"] == COMMA
+        assert dict(restore)["restore"] == WHOLE
+        assert dict(status)["status"] == COMMA
 
 
 def test_powershell_is_asked_with_words_on_lines(
