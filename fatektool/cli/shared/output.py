@@ -119,8 +119,8 @@ class Held:
         """
         if self._new:
             self._shown, self._since, self._new = self._new, now, ""
-            self._until = time.monotonic() + _READ_S
-        if self._shown and (now is self._since or time.monotonic() < self._until):
+            self._until = time.perf_counter() + _READ_S
+        if self._shown and (now is self._since or time.perf_counter() < self._until):
             return self._shown
         shown, self._shown = self._shown, ""
         return "" if message == shown else message

@@ -15,7 +15,7 @@ def test_a_line_is_shown_until_it_was_read_and_a_later_round_came(
 ) -> None:
     now = [0.0]
     woken: list[None] = []
-    monkeypatch.setattr("time.monotonic", lambda: now[0])
+    monkeypatch.setattr("time.perf_counter", lambda: now[0])
     monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
     first, later = object(), object()
     with Held() as held:
