@@ -13,12 +13,15 @@ from fatektool.cli.shared.broadcast import broadcast_option, means_all, send_to_
 from fatektool.cli.shared.colour import joined, word
 from fatektool.cli.shared.connection_options import connection_options
 from fatektool.cli.shared.options import yes_option
-from fatektool.errors import PlcError, PlcRefused
+from fatektool.cli.shared.unfinished import unfinished
+from fatektool.errors import PlcError, PlcNotReady, PlcRefused
+from fatektool.jobs.write_back.record import RESTORE
 from fatektool.protocol.commands import Command, RunStop
 
 if TYPE_CHECKING:
     from fatektool.cli.shared.connection import Connection
     from fatektool.cli.shared.output import Voice
+    from fatektool.client import Plc
 
 
 @click.command("run", epilog="Example: fatektool run -p sim: --yes")
@@ -37,6 +40,28 @@ def run_command(connection: Connection, voice: Voice, *, broadcast: bool, yes: b
 def stop_command(connection: Connection, voice: Voice, *, broadcast: bool, yes: bool) -> None:
     """Put the PLC into STOP (41) and read the mode back. The machine is no longer controlled."""
     _change(connection, voice, run=False, broadcast=broadcast, yes=yes)
+
+
+def _require_whole_program(plc: Plc, connection: Connection, voice: Voice) -> None:
+    """Refuse to RUN half of a restore. The program is read only where a restore did not complete.
+
+    Raises:
+        PlcNotReady: the program is half the previous and half a new one.
+    """
+    address = connection.address
+    for record in unfinished(address.target, address.station):
+        if record.job != RESTORE:
+            continue
+        from fatektool.jobs.programs.half import is_half
+
+        with voice.progress() as bar:
+            half = is_half(plc, record, bar.update)
+        if half:
+            raise PlcNotReady(
+                f"the PLC stays in STOP: it has pages of {record.file} and pages of the program before it, "
+                "as a restore did not complete",
+                hint=f"finish the restore: {record.command}",
+            )
 
 
 def _change(connection: Connection, voice: Voice, *, run: bool, broadcast: bool, yes: bool) -> None:
@@ -63,6 +88,7 @@ def _change(connection: Connection, voice: Voice, *, run: bool, broadcast: bool,
                 unchanged=f"the PLC stays in {here.mode}",
             )
             if run:
+                _require_whole_program(plc, connection, voice)
                 plc.run()
             else:
                 plc.stop()

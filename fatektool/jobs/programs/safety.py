@@ -68,7 +68,7 @@ class SafetyBackup:
             old = load_backup(self.earlier)
         except FatektoolError:
             return None  # a damaged copy is of no use, and no reason to stop
-        if not _is_between(self.present.program, old.program, self.wanted):
+        if not is_between(self.present.program, old.program, self.wanted):
             return None
         there = self.present.data
         if self.data is not None and (
@@ -128,12 +128,12 @@ def find_safety_backup(
         folder: where safety backups are.
     """
     for path, old in _safety_backups(station, file, folder):
-        if old != present and _is_between(present, old, wanted):
+        if old != present and is_between(present, old, wanted):
             return path
     return None
 
 
-def _is_between(present: Program, old: Program, wanted: Program) -> bool:
+def is_between(present: Program, old: Program, wanted: Program) -> bool:
     """True if each page of a program is that of an old one or that of the one to be restored."""
     if old.ladder_words != present.ladder_words or len(old.pages) != len(present.pages):
         return False

@@ -14,6 +14,7 @@ from fatektool.errors import DataError
 from fatektool.jobs.write_back.record import Unfinished
 from fatektool.simulator.refusal import Refusal
 from tests.cli.running import NEW, OLD, Cli, Door, Press, served
+from tests.program.samples import program
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -62,6 +63,37 @@ def test_who_talks_to_it_next_is_warned(press: Press, cli: Cli, door: Door, stat
     document = cli("status", "-p", door.target, "--json").document("status")["unfinished_restore"]
     assert (document["file"], document["safety_backup"]) == (str(press.new), str(safety))
     assert document["command"] == again
+
+
+def test_half_a_program_does_not_run(press: Press, cli: Cli, door: Door) -> None:
+    command = fail(cli, press, door)
+    for words in (["run", "--yes"], ["run", "--yes", "--json"]):
+        done = cli(*words, "-p", door.target)
+        assert done.code == 4
+        assert (
+            f"the PLC stays in STOP: it has pages of {press.new} and pages of the program before" in done.err
+        )
+        assert done.err.splitlines()[-1].endswith(command)
+        assert not door.simulation.plcs[1].running
+    assert cli(*shlex.split(command)[1:]).code == 0
+    assert cli("run", "--yes", "-p", door.target).code == 0
+    assert door.simulation.plcs[1].running
+
+
+@pytest.mark.parametrize("now", ["the previous", "the new", "another", "no file"])
+def test_a_whole_program_runs_whatever_the_record_says(press: Press, cli: Cli, door: Door, now: str) -> None:
+    """Another PLC may be connected to the port, or the program may have been loaded in another way."""
+    fail(cli, press, door)
+    device = door.simulation.plcs[1]
+    if now == "no file":
+        press.new.unlink()
+    else:
+        image = {"the previous": OLD, "the new": NEW, "another": program(400, seed=9)}[now]
+        device.pages[:] = image.pages
+    done = cli("run", "--yes", "-p", door.target)
+    assert done.code == 0
+    assert WARNING in done.err
+    assert device.running
 
 
 def test_the_command_that_is_said_finishes_it_and_nobody_is_warned_any_more(
