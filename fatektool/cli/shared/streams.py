@@ -194,5 +194,5 @@ def lost_output(loss: OSError) -> DataError:
         )
     return DataError(
         f"standard output cannot be written: {loss.strerror}",
-        hint="free some space or name another place, and run it again",
+        hint="free some space or name another place; the command was carried out, its output is not complete",
     )
