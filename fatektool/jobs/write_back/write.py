@@ -84,7 +84,8 @@ def write_back(
         except (Exception, KeyboardInterrupt) as error:
             # Whatever it is, a trace that cannot be written among it: what the PLC holds must be said.
             copy.needed = counters.writes != sent
-            _look(plan)
+            if copy.needed:
+                _look(plan)
             known = isinstance(error, PlcError | LineError | KeyboardInterrupt)
             if not copy.needed or (known and all(part.untouched for part in plan.parts)):
                 mark.end(complete=False)
