@@ -128,7 +128,8 @@ def test_the_longest_bar_fits_into_sixty_columns(press: Press) -> None:
         assert terminal.end() == 0
         lines = terminal.text.splitlines()
     for phase, pages in (("reading", 16), ("writing", 8), ("reading back", 8)):
-        bar = rf"{phase} +━+ {pages}/{pages} pages +[0-9.]+/s 0:00:0\d"
+        # A phase that took no time has no rate, and a busy computer takes longer.
+        bar = rf"{phase} +━+ {pages}/{pages} pages +(?:[0-9.]+/s +)?\d:\d\d:\d\d"
         assert any(re.fullmatch(bar, line) for line in lines), lines
 
 
