@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 posix = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such rights")
 
 GROUP, FIRST, SECOND = 64100, 64101, 64102  # of nobody
-ROUNDS = 40
+ROUNDS = 24
 USER = """
 import glob, os, pathlib, sys, tempfile  # all that is loaded later: another user may not read this Python
 from tests.history.books import ONE, Book
@@ -124,7 +124,7 @@ def as_user(number: int, folder: Path, *words: str) -> str:
 @two_users
 @pytest.mark.parametrize("umask", ["022", "077"])
 def test_two_users_in_turns(shared: Path, umask: str) -> None:
-    """As many rounds as make both write into each folder of objects of the other's, and packs in between."""
+    """As many rounds as make both write into folders of objects of the other's, and packs in between."""
     seen = []
     with user(FIRST, "press", shared, umask) as one, user(SECOND, "oven", shared, umask) as two:
         for _ in range(ROUNDS):

@@ -5,7 +5,7 @@ import os
 import signal
 import subprocess
 import sys
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import pytest
 
@@ -13,7 +13,7 @@ from tests.cli.running import Cli, check
 from tests.root import ROOT
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
 
@@ -51,6 +51,25 @@ class Life(NamedTuple):
         found = json.loads(self.out)
         check(found, schema)
         return found
+
+
+Deaths: TypeAlias = "Callable[[list[str]], list[int]]"
+"""From the steps of a command to those at which it is killed, counted from 1."""
+
+
+def every(steps: list[str]) -> list[int]:
+    """All steps, counted from 1."""
+    return [*range(1, len(steps) + 1)]
+
+
+def each_kind(steps: list[str]) -> list[int]:
+    """All but what is in the middle of a row of reads of one command: it changes nothing anywhere."""
+    reads = ("send 4F", "answered 4F", "send 46", "answered 46", "send 48", "answered 48")
+    return [
+        at
+        for at in every(steps)
+        if steps[at - 1] not in reads or steps[max(0, at - 3) : at + 2 : 2] != [steps[at - 1]] * 3
+    ]
 
 
 class Mortals:

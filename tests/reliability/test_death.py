@@ -8,6 +8,7 @@ import shutil
 import signal
 import subprocess
 import tempfile
+from functools import partial
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,15 +17,17 @@ import pytest
 
 from fatektool.program.archive import load_backup, save_backup
 from tests.cli.running import Door, one_line, served
+from tests.night import night
 from tests.program.samples import backup, program
+from tests.reliability.conftest import each_kind, every
 from tests.users import IS_ROOT, NOBODY
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from fatektool.program.image import Program
     from tests.cli.running import Cli
-    from tests.reliability.conftest import Life, Mortals
+    from tests.reliability.conftest import Deaths, Life, Mortals
 
 WORDS, PAGES = 256, 5
 OLD, NEW, OTHER = (program(WORDS, seed=seed) for seed in (1, 2, 3))
@@ -70,17 +73,30 @@ def stray(place: Path, *wanted: str) -> list[str]:
 # --- killed ---------------------------------------------------------------------------------------------
 
 
+deaths_at = pytest.mark.parametrize("deaths", [each_kind, night(every)])
+
+
+def test_death_comes_at_each_kind_of_step() -> None:
+    reads = ["send 4F", "answered 4F"] * 4
+    assert each_kind(["open x", *reads, *["send 50", "answered 50"] * 3]) == [1, 2, 3, 8, 9, *range(10, 16)]
+
+
+@deaths_at
 @pytest.mark.parametrize("there", [False, True], ids=["new", "replaced"])
-def test_a_backup_killed_at_any_step(door: Door, place: Path, mortals: Mortals, *, there: bool) -> None:
+def test_a_backup_killed_at_any_step(
+    door: Door, place: Path, mortals: Mortals, deaths: Deaths, *, there: bool
+) -> None:
     words = [*BACKUP, "-p", door.target]
     before = {"x.json": OTHER} if there else {}
-    first = 1 if there else file_steps(whole_life(mortals, place, words))  # up to there the two are the same
-    for at in count(first):
-        clear(place, **{"x": OTHER} if there else {})
+    begin = partial(clear, place, **{"x": OTHER} if there else {})
+    whole = whole_life(mortals, place, words, begin)
+    first = 1 if there else file_steps(whole)  # up to there the two are the same
+    assert len(whole.steps) > 2 * 2 * (PAGES + 1)
+    for at in deaths(whole.steps):
+        if at < first:
+            continue
+        begin()
         life = mortals(*words, folder=place, at=at)
-        if life.code == 0:
-            assert at > 2 * 2 * (PAGES + 1)
-            break
         assert (life.code, life.out) == (KILLED, ""), life.steps
         assert backups(place) in (before, {"x.json": OLD}), life.steps
         assert len(stray(place, "x.json")) <= 1
@@ -90,10 +106,14 @@ def test_a_backup_killed_at_any_step(door: Door, place: Path, mortals: Mortals, 
     assert door.pages == OLD.pages
 
 
-def whole_life(mortals: Mortals, place: Path, words: list[str]) -> Life:
+def whole_life(
+    mortals: Mortals, place: Path, words: list[str], before: Callable[[], object] | None = None
+) -> Life:
     """The command undisturbed, with the lock file there already, as it is each time after the first."""
+    begin = before or partial(clear, place)
+    begin()
     mortals(*words, folder=place)
-    clear(place)
+    begin()
     return mortals(*words, folder=place)
 
 
@@ -120,15 +140,19 @@ def test_a_backup_without_force_is_made_once(door: Door, place: Path, mortals: M
     assert set(made) == {False, True}
 
 
-def test_a_restore_killed_at_any_step(door: Door, place: Path, mortals: Mortals) -> None:
+@deaths_at
+def test_a_restore_killed_at_any_step(door: Door, place: Path, mortals: Mortals, deaths: Deaths) -> None:
     words = [*RESTORE, "-p", door.target]
-    died: dict[str, int] = {}
-    for at in count(1):
+
+    def begin() -> None:
         clear(place, new=NEW)
         load(door, OLD)
+
+    whole = whole_life(mortals, place, words, begin)
+    died: dict[str, int] = {}
+    for at in deaths(whole.steps):
+        begin()
         life = mortals(*words, folder=place, at=at)
-        if life.code == 0:
-            break
         assert (life.code, life.out) == (KILLED, ""), life.steps
         died[life.steps[-1].split()[0]] = at
         half = list(door.pages)

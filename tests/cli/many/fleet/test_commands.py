@@ -86,13 +86,13 @@ def test_a_plc_that_hangs_is_given_up(cli: Cli, plant: Hall, monkeypatch: pytest
             deaf=f'target = "{target}"\ntimeout_s = 0.01\nretries = 1000\n',
             behind=f'target = "{target}"\ntimeout_s = 0.01\nstation = 2\n',
         )
-        done = cli("fleet", "status", "--deadline", "5", "--json")
+        done = cli("fleet", "status", "--deadline", "2", "--json")
     found = plcs_of(done.document("fleet"))
     assert done.code == 1
     assert [plc["exit_code"] for plc in found.values()] == [0, 0, 0, 3, 3]
     told = found["deaf"]["document"]["error"]
     assert told["kind"] == "deadline_passed"
-    assert told["message"].startswith("stopped at the time limit of 5 s")
+    assert told["message"].startswith("stopped at the time limit of 2 s")
     behind = found["behind"]["document"]["error"]["kind"]  # asked after it, with a limit of its own
     assert behind in {"no_answer", "deadline_passed"}  # whichever of its two limits is noticed first
 

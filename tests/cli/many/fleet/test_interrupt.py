@@ -162,9 +162,9 @@ def test_the_live_table(columns: int, lines: int) -> None:
 
 def test_nothing_of_it_where_nobody_wants_it() -> None:
     with served(OLD) as door:
-        tables = f'[plc.press]\ntarget = "{door.target}"\n[plc.nobody]\ntarget = "tcp://127.0.0.1:1"\n'
+        tables = f'[plc.press]\ntarget = "{door.target}"\n[plc.nobody]\ntarget = "/dev/nobody"\n'
         Path("fatek.toml").write_text(tables)
         with Terminal("fleet", "status", "--news", "-q", columns=300) as terminal:
             assert terminal.end() == 1
             (line,) = terminal.text.splitlines()
-            assert line.startswith("nobody  FAILED    no valid answer: tcp://127.0.0.1:1: cannot connect")
+            assert line.startswith("nobody  FAILED    no valid answer: /dev/nobody: ")
