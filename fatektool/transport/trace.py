@@ -24,6 +24,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, BinaryIO, Final, Protocol
 
 from fatektool.errors import TransportError, UsageError
+from fatektool.files.portable_name import require_file_name
 from fatektool.protocols import PROTOCOLS
 from fatektool.transport.base import WrappedTransport
 
@@ -105,6 +106,7 @@ def open_trace(path: Path, protocol: str) -> TraceWriter:
     suffix = path.suffix.lower()
     if suffix not in {".pcap", ".ndjson"}:
         raise UsageError(f"trace {path}: expected a name that ends in .pcap or .ndjson")
+    require_file_name(str(path))
     try:
         file = open(path, "wb", opener=_private)  # noqa: SIM115  # the writer closes it
     except (OSError, ValueError) as error:

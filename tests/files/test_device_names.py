@@ -9,11 +9,12 @@ import pytest
 from fatektool.cli import run
 from fatektool.errors import UsageError
 from fatektool.files import portable_name
-from fatektool.files.atomic import read_bounded, require_place, write_whole
+from fatektool.files.atomic import make_folder, read_bounded, require_place, write_whole
 from fatektool.files.portable_name import device_of_name, fault_of_name, is_portable_name
 from fatektool.transport import target as target_module
 from fatektool.transport.serial_line import url
 from fatektool.transport.target import Target
+from fatektool.transport.trace import open_trace
 from tests.rows import each
 
 if TYPE_CHECKING:
@@ -93,6 +94,8 @@ def test_no_file_is_written_or_read_under_such_a_name(tmp_path: Path) -> None:
         lambda: write_whole(path, b"{}", overwrite=True),
         lambda: read_bounded(path, 10),
         lambda: Target.parse("sim:com2.json"),
+        lambda: make_folder(tmp_path / "com2"),
+        lambda: open_trace(tmp_path / "com2.pcap", "facon"),
     ]
     for use in uses:
         with pytest.raises(UsageError, match="on Windows this name opens the device COM2") as caught:
