@@ -58,6 +58,8 @@ BEFORE_REMOVAL = f"#!/bin/sh\nset -e\nfind /{LIBRARY} -name __pycache__ -type d 
 
 def main(folder: str = "dist") -> None:
     """Build it."""
+    if shutil.which("dpkg-deb") is None:
+        sys.exit("dpkg-deb is missing: build the package on Debian or Ubuntu")
     target = Path(folder)
     target.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as work:
