@@ -10,6 +10,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
+from fatektool.errors import FatektoolError
 from fatektool.files.atomic import STANDARD, write_new
 from fatektool.files.times import stamp
 
@@ -50,7 +51,11 @@ def kept(copy: SafetyCopy) -> Iterator[Kept]:
     if copy.folder is not None:
         path = copy.find(copy.folder)
         if path is None:
-            path, new = copy.save(copy.folder), True
+            try:
+                path, new = copy.save(copy.folder), True
+            except FatektoolError as error:
+                error.message = f"{error.message}: nothing was written into the PLC"
+                raise
     found = Kept(path)
     try:
         yield found

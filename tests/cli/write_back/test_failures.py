@@ -91,7 +91,7 @@ def test_the_disk_is_full(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None
         patch.setattr(os, "fsync", full)
         done = bench.run("--yes")
     assert done.code == 5
-    assert "No space left on device" in last(done)
+    assert "No space left on device: nothing was written into the PLC; free some space" in last(done)
     bench.untouched()
 
 
