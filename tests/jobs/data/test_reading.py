@@ -137,16 +137,31 @@ def test_uses_cover_each_element_once() -> None:
             assert all(use_of(symbol, at) is span.use for span in spans for at in (span.first, span.last))
 
 
+K, W, SET, STATUS = Use.KEPT, Use.WORKING, Use.SETTING, Use.STATUS
+CHANGES = {
+    "R": {
+        0: K, 3000: W, 3840: Use.INPUT, 3904: Use.OUTPUT, 3968: SET, 4058: STATUS, 4060: SET, 4128: Use.CLOCK,
+        4136: SET, 4168: K,
+    },
+    "D": {0: K, 4000: SET, 4045: STATUS, 4053: SET, 4096: K},
+    "F": {0: K},
+    "RT": {0: W},
+    "RC": {0: K, 140: W, 200: K, 240: W, 256: K},
+    "M": {
+        0: W, 800: K, 1400: W, 1912: STATUS, 1956: SET, 1957: STATUS, 1958: SET, 1960: STATUS, 1967: SET,
+        1968: STATUS, 2002: K,
+    },
+    "S": {0: W, 500: K},
+}  # fmt: skip
+"""From which element on the use is another, as the manual has it [E:kept]."""
+
+
 def test_uses_as_the_manual_says() -> None:
-    expected = {
-        ("R", 2999): Use.KEPT, ("R", 3000): Use.WORKING, ("R", 3840): Use.INPUT, ("R", 3904): Use.OUTPUT,
-        ("R", 4146): Use.SETTING, ("R", 4128): Use.CLOCK, ("R", 4058): Use.STATUS, ("R", 5000): Use.KEPT,
-        ("D", 3999): Use.KEPT, ("D", 4043): Use.SETTING, ("D", 4045): Use.STATUS, ("M", 799): Use.WORKING,
-        ("M", 800): Use.KEPT, ("M", 1400): Use.WORKING, ("M", 1912): Use.STATUS, ("M", 1959): Use.SETTING,
-        ("M", 1964): Use.STATUS, ("S", 499): Use.WORKING, ("S", 500): Use.KEPT, ("RC", 0): Use.KEPT,
-        ("RC", 140): Use.WORKING, ("RT", 0): Use.WORKING, ("F", 0): Use.KEPT,
-    }  # fmt: skip
-    assert {where: use_of(*where) for where in expected} == expected
+    for symbol, changes in CHANGES.items():
+        uses = [use_of(symbol, at) for at in range(6000)]
+        found = {at: use for at, use in enumerate(uses) if at == 0 or uses[at - 1] is not use}
+        assert found == changes, symbol
+    assert set(CHANGES) == set(SYMBOLS)
     assert Use.KEPT in CONSTANT
     assert Use.WORKING not in CONSTANT
 

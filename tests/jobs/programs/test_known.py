@@ -121,6 +121,16 @@ def test_a_file_for_another_ladder_size_is_no_help() -> None:
     assert found.passes == 2
 
 
+def test_the_first_program_on_file_is_the_likeliest() -> None:
+    """Its size and the order of its pages count; a page of any of them is known."""
+    first, second = program(400, seed=1), program(464, seed=2)
+    found = known(first, second)
+    assert (found.fits(400), found.fits(464)) == (True, False)
+    assert sorted(found.order) == [*range(len(first.pages))]
+    assert found.has(3, second.pages[3])
+    assert not found.has(2, second.pages[3])
+
+
 def test_blank_pages_are_kept_apart_by_a_short_request() -> None:
     """Most pages of a small program in a large memory: the answer before cannot pass for the next."""
     image = with_pages(program(1000), dict.fromkeys(range(4, 17), BLANK))
