@@ -106,14 +106,25 @@ def test_a_job_of_windows(made: int, *, assigned: bool, expected: list[str]) -> 
     assert jobs.calls == expected
 
 
-def test_a_script_that_windows_cannot_start(monkeypatch: pytest.MonkeyPatch) -> None:
+@each(
+    ("number", "command", "said"),
+    [
+        (
+            193,
+            "alarm.ps1 --now",
+            "alarm.ps1: it is not a program; for a script name the program that runs it",
+        ),
+        (2, "echo x", "echo: there is no such program; for a command of a shell write cmd /c before it"),
+        (5, "C:\\x.exe", "C:\\x.exe: as the system says"),
+    ],
+)
+def test_what_windows_does_not_start(number: int, command: str, said: str) -> None:
     def start(*_: object, **__: object) -> None:
-        error = OSError(8, "%1 is not a valid Win32 application")
-        error.winerror = 193  # type: ignore[attr-defined, unused-ignore]  # as Windows sets it
+        error = OSError(8, "as the system says")
+        error.winerror = number  # type: ignore[attr-defined, unused-ignore]  # as Windows sets it
         raise error
 
-    monkeypatch.setattr(subprocess, "Popen", start)
     event = alarms.Event("press", "COM3", 1, "backup", "failure", 3, "no answer", "", "2026-11-22T03:15:00Z")
-    assert alarms.run_command("alarm.ps1 --now", event) == (
-        "cannot start alarm.ps1: it is not a program; for a script name the program that runs it"
-    )
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(subprocess, "Popen", start)
+        assert alarms.run_command(command, event) == f"cannot start {said}"

@@ -19,8 +19,11 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 TIME_LIMIT_S: Final = 30.0
-_NOT_A_PROGRAM: Final = 193
-"""ERROR_BAD_EXE_FORMAT of winerror.h: Windows starts no scripts but .bat and .cmd."""
+_ON_WINDOWS: Final[dict[int | None, str]] = {
+    2: "there is no such program; for a command of a shell write cmd /c before it",
+    193: "it is not a program; for a script name the program that runs it",
+}
+"""By the number of winerror.h: echo is a command of cmd.exe, and only .bat and .cmd start of all scripts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,9 +93,10 @@ def run_command(
     try:
         group = ProcessGroup(command, stdout=2, env=os.environ | event.environment())
     except (OSError, ValueError) as error:
-        if getattr(error, "winerror", None) == _NOT_A_PROGRAM:
-            return f"cannot start {program}: it is not a program; for a script name the program that runs it"
-        return f"cannot start {program}: {getattr(error, 'strerror', None) or error}"
+        reason = (
+            _ON_WINDOWS.get(getattr(error, "winerror", None)) or getattr(error, "strerror", None) or error
+        )
+        return f"cannot start {program}: {reason}"
     try:
         code = group.wait(time_limit_s)
     except subprocess.TimeoutExpired:
