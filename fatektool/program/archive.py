@@ -19,7 +19,6 @@ refused, with what is wrong and where, before anything is done with it.
 
 from __future__ import annotations
 
-import json
 import re
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -27,6 +26,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from fatektool.errors import DataError
 from fatektool.files.atomic import read_bounded, write_whole
+from fatektool.files.indented_json import indented_json
 from fatektool.files.strict_json import read_json
 from fatektool.files.times import is_utc
 from fatektool.program.checked_document import CheckedDocument, short
@@ -153,7 +153,7 @@ class Backup:
             **({} if self.proof is None else {"proof": self.proof.document()}),
             "sha256": program.sha256,
         }
-        text = json.dumps(head, indent=1, allow_nan=False).removesuffix("\n}")
+        text = indented_json(head, 1).removesuffix("\n}")
         pages = ",\n".join(f'  "{page.hex().upper()}"' for page in program.pages)
         data = "" if self.data is None else f',\n "data": {_indented(self.data.document())}'
         return f'{text},\n "pages": [\n{pages}\n ]{data}\n}}\n'.encode()
@@ -218,7 +218,7 @@ def _json(data: bytes, name: str) -> dict[str, Any]:
 
 
 def _indented(document: dict[str, Any]) -> str:
-    return json.dumps(document, indent=1, allow_nan=False).replace("\n", "\n ")
+    return indented_json(document, 1).replace("\n", "\n ")
 
 
 class _Reader(CheckedDocument):

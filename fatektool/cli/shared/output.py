@@ -141,9 +141,9 @@ def print_stderr(text: str) -> None:
 
 def print_json(document: dict[str, Any]) -> None:
     """Print one document on stdout."""
-    import json
+    from fatektool.files.indented_json import indented_json
 
-    click.echo(json.dumps(document, indent=2, allow_nan=False))
+    click.echo(indented_json(document, 2))
 
 
 class Voice(NamedTuple):

@@ -8,6 +8,8 @@ import re
 import time
 from typing import TYPE_CHECKING, Final
 
+from fatektool.files.indented_json import indented_json
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -19,7 +21,7 @@ _COLUMNS: Final = ("time", "target", "station", "key", "element", "type", "raw",
 
 def as_json(snapshot: Snapshot) -> str:
     """One document, indented."""
-    return json.dumps(snapshot.document(), indent=2, allow_nan=False) + "\n"
+    return indented_json(snapshot.document(), 2) + "\n"
 
 
 def as_ndjson(snapshot: Snapshot) -> str:

@@ -290,12 +290,12 @@ def _check(part: object, value: Value | None, where: str) -> None:
         element, kind = Element.parse(part["element"]), ValueType(part["type"])
     except (KeyError, TypeError, ValueError, AttributeError, UsageError) as error:
         raise DataError(f"{where} is damaged: element or type") from error
-    bits = element.kind.bits
-    if kind.bits not in {None, bits} or (kind.bits is None and bits == 1):
+    bits, its_bits = element.kind.bits, kind.bits
+    if its_bits not in {None, bits} or (its_bits is None and bits == 1):
         raise DataError(f"{where} is damaged: {element} is no {kind.value}")
-    numbers = all(each is None or _finite(each) for each in (scale, offset))
+    numbers = (scale is None or _finite(scale)) and (offset is None or _finite(offset))
     scaled = (scale, offset) != (None, None)
-    texts = all(isinstance(part.get(name, ""), str) for name in ("unit", "comment"))
+    texts = isinstance(part.get("unit", ""), str) and isinstance(part.get("comment", ""), str)
     if not numbers or not texts or (scaled and kind not in NUMBERS):
         raise DataError(f"{where} is damaged: unit, scale, offset or comment")
     if raw is None and "raw" in part:
