@@ -15,7 +15,7 @@ from fatektool.cli.shared.image_words import warn_of_image
 from fatektool.cli.shared.options import PATH
 from fatektool.cli.shared.output import Voice, table
 from fatektool.cli.shared.pairs import together
-from fatektool.cli.shared.unfinished import DATA, forget, record_of
+from fatektool.cli.shared.unfinished import DATA, forget, record_to_use
 from fatektool.cli.shared.write_back import Offer, WriteCommand
 from fatektool.cli.shared.write_options import Terms, write_options
 from fatektool.counts import counted
@@ -224,7 +224,7 @@ def _carry_out(
         result = carry_out(plc, plan, safety, agree, progress=bar.update, mark=mark)
     writing.forget()
     if wanted is not None:  # the program is verified too
-        forget(record_of(plc.target, plc.link.station), writing.voice)
+        forget(record_to_use(plc.target, plc.link.station), writing.voice)
     return result
 
 

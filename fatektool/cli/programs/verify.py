@@ -16,7 +16,7 @@ from fatektool.cli.shared.options import PATH
 from fatektool.cli.shared.output import passed
 from fatektool.cli.shared.pairs import together
 from fatektool.cli.shared.report import report_option, write_report
-from fatektool.cli.shared.unfinished import DATA, forget, record_of, warn_of_unfinished
+from fatektool.cli.shared.unfinished import DATA, forget, record_to_use, warn_of_unfinished
 from fatektool.errors import UsageError
 from fatektool.jobs.data.reading import read_data
 from fatektool.jobs.programs.verify import compare_with_plc
@@ -73,9 +73,9 @@ def verify_command(
     found = result.found
     address = connection.address
     if found.same:
-        forget(record_of(address.target, address.station), voice)
+        forget(record_to_use(address.target, address.station), voice)
         if compared is not None and compared.same:
-            forget(record_of(address.target, address.station, *DATA), voice)
+            forget(record_to_use(address.target, address.station, *DATA), voice)
     warn_of_unfinished(address.target, address.station, voice)
     count = len(found.a.pages)
     same = f"same: the PLC's program is the one in {file}, {count} pages"

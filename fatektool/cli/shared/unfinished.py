@@ -91,19 +91,43 @@ class Found(NamedTuple):
 
 
 def records_of(target: str, station: int) -> Iterator[Found]:
-    """The records of this PLC, that of a restore first."""
+    """The records of this PLC, that of a restore first; last those of an adapter that was plugged in again.
+
+    ``/dev/serial/by-id/…`` may be another device then: such a record is known by the target that it names.
+    """
     path = record_of(target, station)
     if path is None:
         return
     folder, _, name = path.rpartition("/")
     stem = name.removesuffix(".json")
     try:
-        names = sorted(os.listdir(folder))  # noqa: PTH208
+        names = sorted(each for each in os.listdir(folder) if each.endswith(".json"))  # noqa: PTH208
     except OSError:  # no folder, no record
         return
-    of_values = [each for each in names if each.startswith(f"{stem}-") and each.endswith(".json")]
-    for each in [name] * (name in names) + of_values:
+    of_values = [each for each in names if each.startswith(f"{stem}-")]
+    here = [name] * (name in names) + of_values
+    for each in here:
         yield Found(f"{folder}/{each}", load(f"{folder}/{each}"))
+    for each in names:
+        if f"-st{station:02}-" in each and each not in here:
+            record = load(f"{folder}/{each}")
+            if record is not None and (record.target, record.station) == (target, station):
+                yield Found(f"{folder}/{each}", record)
+
+
+def record_to_use(target: str, station: int, *about: str) -> str | None:
+    """``record_of``; or the record of the same write before the adapter was plugged in again."""
+    path = record_of(target, station, *about)
+    if path is not None and not os.path.exists(path):  # noqa: PTH110
+        for found in records_of(target, station):
+            if _about(found.path) == _about(path):
+                return found.path
+    return path
+
+
+def _about(path: str) -> str:
+    """The part of a record's name after the line's number."""
+    return path.rpartition("-st")[2].removesuffix(".json").partition("-")[2].partition("-")[2]
 
 
 def load(path: str | None) -> Unfinished | None:

@@ -23,7 +23,7 @@ from fatektool.cli.shared.unfinished import (
     RecordMark,
     forget,
     load,
-    record_of,
+    record_to_use,
     warn_of_unfinished,
 )
 from fatektool.errors import RestoreIncomplete
@@ -66,7 +66,7 @@ class WriteCommand:
             safety_folder(terms.safety_dir, file, voice, dry_run=terms.dry_run) if terms.saves else None
         )
         which = about if self.job == RESTORE else (self.job, self._file or "", *about)
-        self.record = record_of(connection.address.target, connection.address.station, *which)
+        self.record = record_to_use(connection.address.target, connection.address.station, *which)
 
     def open(self, *needs: Command) -> Plc:
         """Open the line; warn of other writes that did not complete. The errors are ``Connection.open``'s."""

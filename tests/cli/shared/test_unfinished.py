@@ -5,20 +5,21 @@ from __future__ import annotations
 import json
 import os
 import shlex
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from fatektool.cli.shared.unfinished import record_of
+from fatektool.cli.shared.unfinished import record_of, record_to_use, unfinished
 from fatektool.errors import DataError
 from fatektool.jobs.write_back.record import Unfinished
 from fatektool.simulator.refusal import Refusal
 from tests.cli.running import NEW, OLD, Cli, Door, Press, served
+from tests.platforms import posix
 from tests.program.samples import program
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
 
 WARNING = "warning: a restore into this PLC did not complete: do not switch it to RUN"
 QUICK = ("--timeout", "0.2", "--retries", "0")
@@ -121,6 +122,33 @@ def test_two_names_of_one_line_are_one(place: Path) -> None:
     (place / "link").symlink_to(place / "plc.state")
     assert record_of(f"sim:{place}/link", 1) == record_of(f"sim:{place}/plc.state", 1)
     assert record_of("tcp://HOST", 1) == record_of("udp://host:500", 1)
+
+
+@posix("a symbolic link names an adapter")
+def test_an_adapter_that_was_plugged_in_again_is_the_same(tmp_path: Path, state_folder: Path) -> None:
+    """``/dev/serial/by-id/…`` is ttyUSB1 then, where it was ttyUSB0."""
+    link = tmp_path / "adapter"
+    for number in (0, 1):
+        (tmp_path / f"ttyUSB{number}").touch()
+    link.symlink_to("ttyUSB0")
+    target = str(link)
+    for about in ((), ("data",)):
+        before = record_of(target, 1, *about)
+        assert before is not None
+        record = Unfinished(target, 1, "2026-11-28T03:15:00Z", "/srv/a.json", None, f"restore {about}")
+        record.save(Path(before))
+
+    link.unlink()
+    link.symlink_to("ttyUSB1")
+    assert {each.command for each in unfinished(target, 1)} == {"restore ()", "restore ('data',)"}
+    assert unfinished(target, 2) == unfinished(str(tmp_path / "ttyUSB1"), 1) == []
+    for about in ((), ("data",)):
+        found = record_to_use(target, 1, *about)
+        assert found is not None
+        assert Path(found).parent == state_folder
+        assert Unfinished.load(Path(found)).command == f"restore {about}"
+    assert record_to_use(target, 1, "other") == record_of(target, 1, "other")
+    assert record_to_use(target, 2) == record_of(target, 2)
 
 
 def test_verify_that_finds_it_whole_clears_it(press: Press, cli: Cli, door: Door, state_folder: Path) -> None:
