@@ -12,18 +12,14 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 ENTRY = "from fatektool.cli import main\nmain()\n"
-BY_NAME = ("serial.urlhandler",)
-"""Packages beside fatektool whose modules are imported by name; PyInstaller finds all others itself."""
 LEFT_OUT = ("markdown_it", "pygments", "setuptools", "tkinter")
 """What dependencies can use, and fatektool does not."""
 SPEC = """
-from PyInstaller.utils.hooks import collect_submodules
-
 parts = Analysis(
     [*{scripts!r}, {entry!r}],
     pathex=[{root!r}],
     datas=[({schemas!r}, "fatektool/schemas")],
-    hiddenimports=[*{modules!r}, *(name for package in {by_name!r} for name in collect_submodules(package))],
+    hiddenimports={modules!r},
     excludes={left_out!r},
 )
 pure = PYZ(parts.pure)
@@ -34,10 +30,16 @@ for name, without in (("fatektool", {tries!r}), ("fatektool-try", ["entry"])):
 """
 
 
-def modules() -> list[str]:
-    """All modules of fatektool: its commands are imported by name."""
-    found = (path.relative_to(ROOT).with_suffix("") for path in (ROOT / "fatektool").rglob("*.py"))
-    return sorted(".".join(path.parts).removesuffix(".__init__") for path in found)
+def by_name() -> list[str]:
+    """The modules that are imported by name: commands of fatektool, URLs of pyserial."""
+    import serial
+
+    serial_folder = Path(serial.__file__).parent
+    own, urls = (ROOT / "fatektool").rglob("*.py"), (serial_folder / "urlhandler").glob("*.py")
+    found = [path.relative_to(ROOT) for path in own] + [
+        path.relative_to(serial_folder.parent) for path in urls
+    ]
+    return sorted(".".join(path.with_suffix("").parts).removesuffix(".__init__") for path in found)
 
 
 def main(folder: str = "dist", *scripts: str) -> None:
@@ -53,8 +55,7 @@ def main(folder: str = "dist", *scripts: str) -> None:
             entry=str(entry),
             root=str(ROOT),
             schemas=str(ROOT / "fatektool" / "schemas"),
-            modules=modules(),
-            by_name=BY_NAME,
+            modules=by_name(),
             left_out=LEFT_OUT,
         )
         spec.write_text(text, encoding="utf-8")

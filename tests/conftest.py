@@ -22,10 +22,9 @@ from hypothesis import HealthCheck, is_hypothesis_test, settings
 
 from tests.compiling import import_from_the_end, keep_compiled
 from tests.in_memory import keep_in_memory
-from tests.night import AT_NIGHT, FEW, examples
+from tests.night import AT_NIGHT, FEW, examples, left_out
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from pathlib import Path
 
 _SEED = "FATEKTOOL_PROPERTY_SEED"
@@ -81,7 +80,12 @@ def pytest_report_header(config: pytest.Config) -> str:
     return f"property tests: new cases, from --hypothesis-seed={config.option.hypothesis_seed}"
 
 
-def pytest_collection_modifyitems(config: pytest.Config, items: Sequence[pytest.Item]) -> None:
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    if os.environ.get(FEW):
+        out = left_out(items)
+        config.hook.pytest_deselected(items=out)
+        gone = set(map(id, out))
+        items[:] = [item for item in items if id(item) not in gone]
     if _looks_for_new_cases(config):
         for item in items:
             function = getattr(item, "obj", None)

@@ -7,9 +7,15 @@ is new and not the code, few are enough.
 from __future__ import annotations
 
 import os
-from typing import Any
+from collections import defaultdict
+from typing import TYPE_CHECKING, Any
 
 import pytest
+
+from tests.root import ROOT
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 AT_NIGHT = "FATEKTOOL_TESTS_AT_NIGHT"
 """Set in the environment before a test is imported, where all of it is to be tried."""
@@ -18,6 +24,10 @@ FEW = "FATEKTOOL_TESTS_FEW"
 _SHARE = 4
 _LEAST = 10
 _FEW = 3
+_FOLDERS_OF_FEW = [
+    ROOT / "tests" / name for name in ("protocol", "planner", "program", "jobs", "simulator/slaves")
+]
+"""The tests in them use nothing of the system, or nothing that differs between the rows of one test."""
 
 
 def examples(most: int) -> int:
@@ -37,3 +47,13 @@ def seeds(by_day: int, at_night: int) -> list[Any]:
     if os.environ.get(FEW):
         by_day = min(1, by_day)
     return [*range(by_day), *(night(seed) for seed in range(by_day, at_night))]
+
+
+def left_out(items: Sequence[pytest.Item]) -> list[pytest.Item]:
+    """The rows that are not run where few are enough: all but the first, the middle and the last."""
+    rows: dict[str, list[pytest.Item]] = defaultdict(list)
+    for item in items:
+        if any(item.path.is_relative_to(folder) for folder in _FOLDERS_OF_FEW):
+            rows[item.nodeid.partition("[")[0]].append(item)
+    kept = {id(row) for found in rows.values() for row in (found[0], found[len(found) // 2], found[-1])}
+    return [row for found in rows.values() for row in found if id(row) not in kept]

@@ -1,9 +1,14 @@
-"""A test of rows fails if one of them does, and names it."""
+"""A test of rows fails if one of them does, and names it; where few are enough, three of them are run."""
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import pytest
 
+from tests.night import left_out
+from tests.root import ROOT
 from tests.rows import each
 
 SEEN: list[tuple[int, str]] = []
@@ -44,3 +49,12 @@ def test_those_that_fail_are_named() -> None:
 def test_no_rows_are_a_fault() -> None:
     with pytest.raises(AssertionError):
         each("number", [])
+
+
+def test_where_few_are_enough_three_rows_of_a_test_are_run() -> None:
+    def items(folder: str, name: str, count: int) -> list[Any]:
+        path = ROOT / "tests" / folder / "test_it.py"
+        return [SimpleNamespace(path=path, nodeid=f"{folder}::{name}[{row}]") for row in range(count)]
+
+    given = [*items("planner", "large", 7), *items("planner", "small", 3), *items("transport", "large", 7)]
+    assert [item.nodeid for item in left_out(given)] == [f"planner::large[{row}]" for row in (1, 2, 4, 5)]

@@ -8,15 +8,14 @@ list_ports          its functions of cfgmgr32 are missing; the ports are in the 
 from __future__ import annotations
 
 import errno
-import importlib.abc
-import importlib.machinery
-import importlib.util
 import msvcrt
 import sys
-from typing import TYPE_CHECKING, Any, ClassVar
+from importlib.machinery import ModuleSpec
 
+TYPE_CHECKING = False  # each start of Python pays for what is imported here
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from typing import Any
 
 _locking = msvcrt.locking
 
@@ -64,29 +63,29 @@ def _of_the_list(module: Any) -> None:
     module.comports = comports
 
 
-class _Finder(importlib.abc.MetaPathFinder):
-    changes: ClassVar = {"serial.serialwin32": _of_the_port}
-
-    def find_spec(self, name: str, *_: object) -> importlib.machinery.ModuleSpec | None:
+class _Finder:
+    def find_spec(self, name: str, *_: object) -> ModuleSpec | None:
         if name == "serial.tools.list_ports_windows":
-            return importlib.machinery.ModuleSpec(name, _Loader(_of_the_list))
-        if name not in self.changes:
+            return ModuleSpec(name, _Loader(_of_the_list))
+        if name != "serial.serialwin32":
             return None
+        from importlib.util import find_spec
+
         sys.meta_path.remove(self)
         try:
-            spec = importlib.util.find_spec(name)
+            spec = find_spec(name)
         finally:
             sys.meta_path.insert(0, self)
         if spec is not None:
-            spec.loader = _Loader(self.changes[name], spec.loader)
+            spec.loader = _Loader(_of_the_port, spec.loader)
         return spec
 
 
-class _Loader(importlib.abc.Loader):
+class _Loader:
     def __init__(self, change: Callable[[Any], None], inner: Any = None) -> None:
         self.change, self.inner = change, inner
 
-    def create_module(self, spec: importlib.machinery.ModuleSpec) -> Any:
+    def create_module(self, spec: ModuleSpec) -> Any:
         return self.inner.create_module(spec) if self.inner else None
 
     def exec_module(self, module: Any) -> None:

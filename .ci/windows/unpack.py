@@ -10,6 +10,8 @@ from pathlib import Path
 
 WAITS_FOR_WINE = "cp313/DLLs/_wmi.pyd"
 """Asks a service that Wine has not."""
+NOT_USED = ("cp313/Lib/site-packages/", "cp313/Lib/test/", "cp313/Scripts/", "cp313/tcl/")
+"""Files are slow in Wine, and packages of its own would be others than those of the tests."""
 
 
 def main(folder: str) -> None:
@@ -20,7 +22,8 @@ def main(folder: str) -> None:
         data = parts.extractfile(name)
         assert data is not None
         with zipfile.ZipFile(io.BytesIO(data.read())) as python:
-            python.extractall(folder)  # noqa: S202  # of a known hash
+            names = (name for name in python.namelist() if not name.startswith(NOT_USED))
+            python.extractall(folder, names)  # noqa: S202  # of a known hash
     (Path(folder) / WAITS_FOR_WINE).unlink()
 
 

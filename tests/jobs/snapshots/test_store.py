@@ -23,6 +23,7 @@ from fatektool.jobs.snapshots.snapshot import load_snapshot
 from fatektool.jobs.snapshots.store import Keep, append_line, save_dated
 from fatektool.transport.lock import PortLock
 from tests.cli.running import check, process, started
+from tests.night import examples
 from tests.plant import error_of, recorded, snapshot_of
 from tests.platforms import posix
 from tests.users import two_users
@@ -336,7 +337,7 @@ def test_killed_while_appending(place: Path) -> None:
         "line = Path(sys.argv[1]).read_text().splitlines()[0] + '\\n'\n"
         "while True: print(flush=True); append_line(Path(sys.argv[1]), line, Keep(8, False))\n"
     )
-    for number in range(5):
+    for number in range(examples(5)):
         with subprocess.Popen([sys.executable, "-c", program, str(path)], stdout=subprocess.PIPE) as job:
             assert job.stdout is not None
             for _ in range(1 + 5 * number):
