@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 from contextlib import contextmanager
+from functools import cache
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -51,7 +52,12 @@ def schema_text(name: str) -> str:
 def check(document: Any, schema: str) -> None:
     """Check a document against the schema that its name calls for."""
     assert document["schema"].startswith(f"fatektool.{schema}/")
-    Draft202012Validator(json.loads(schema_text(schema))).validate(document)
+    _validator(schema).validate(document)
+
+
+@cache
+def _validator(schema: str) -> Draft202012Validator:
+    return Draft202012Validator(json.loads(schema_text(schema)))
 
 
 class Cli:
