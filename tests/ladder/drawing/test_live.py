@@ -29,17 +29,19 @@ from tests.ladder.drawing.test_layout import CIRCUITS, carried_by_nets
 from tests.ladder.power.test_flow import random_states
 from tests.ladder.test_circuit import network_with
 from tests.ladder.vectors import PRINTED, READ
+from tests.night import night
 from tests.rows import each
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from fatektool.ladder.networks import Network
     from fatektool.ladder.power.logic import State
     from tests.ladder.vectors import Vector
 
 
-MOST = 100
+WAYS = ((60, "utf-8"), (80, "ascii"), (200, "utf-8"))
+"""Widths, and encodings of the terminal."""
 
 
 def text_of(circuit: Circuit, states: Mapping[str, int], columns: int = 80, encoding: str = "utf-8") -> str:
@@ -96,11 +98,11 @@ def test_wires_carry_what_leads_to_them(circuit: Circuit, seed: int, share: floa
         assert claims == carried
 
 
-def drawn_with_anything(given_: Network, seed: int) -> None:
-    """In all widths and both kinds of characters, without states and with them."""
+def drawn_with_anything(given_: Network, seed: int, ways: Iterable[tuple[int, str]] = WAYS) -> None:
+    """In widths and both kinds of characters, without states and with them."""
     circuit = found_in(given_)
     states = random_states(circuit, Random(seed))  # noqa: S311
-    for columns, encoding in ((60, "utf-8"), (80, "ascii"), (200, "utf-8")):
+    for columns, encoding in ways:
         lines = [*draw(circuit, {}, columns, Pen(Letters(encoding)))]
         lines += text_of(circuit, states, columns, encoding).splitlines()
         assert max(map(width_of, lines)) <= columns
@@ -116,15 +118,19 @@ def test_every_network_of_the_prints_is_drawn() -> None:
         drawn_with_anything(given_, seed)
 
 
-@each("vector", [*PRINTED, *READ], ids=lambda vector: vector.text)
-def test_every_vector_is_drawn(vector: Vector) -> None:
-    drawn_with_anything(network_with(vector), seed=1)
+@pytest.mark.parametrize("ways", [1, night(len(WAYS))])
+@each(("number", "vector"), list(enumerate([*PRINTED, *READ])), ids=lambda row: row[1].text)
+def test_every_vector_is_drawn(number: int, vector: Vector, ways: int) -> None:
+    """By day each in the way whose turn it is."""
+    first = number % len(WAYS)
+    drawn_with_anything(network_with(vector), 1, (WAYS * 2)[first : first + ways])
 
 
+@pytest.mark.parametrize("most", [25, night(100)])
 @pytest.mark.parametrize("model", [name for name, model in MODELS.items() if model.has_fbs_image])
-def test_every_network_of_the_simulators_programs_is_drawn(model: str) -> None:
+def test_every_network_of_the_simulators_programs_is_drawn(model: str, most: int) -> None:
     pages = program_of(MODELS[model])
-    networks = ProgramFile(model, Program(64 * (len(pages) - 1), tuple(pages))).networks[:MOST]
+    networks = ProgramFile(model, Program(64 * (len(pages) - 1), tuple(pages))).networks[:most]
     assert len(networks) > 20
     for seed, given_ in enumerate(networks):
         drawn_with_anything(given_, seed)
