@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import socket
 import threading
+from itertools import chain, repeat
+from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import pytest
@@ -14,6 +17,7 @@ from fatektool.simulator.listen.discovery import ANSWER
 from fatektool.simulator.listen.servers import Server, running
 from fatektool.transport import discovery
 from fatektool.transport.discovery import REQUESTS, discover
+from tests.guard import GUARD_S
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -31,9 +35,16 @@ def answer_port(monkeypatch: pytest.MonkeyPatch) -> int:
     return port
 
 
+def listen_to(datagrams: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have the time for answers end when so many datagrams were received."""
+    moments = chain(repeat(0.0, 1 + datagrams), repeat(math.inf))
+    monkeypatch.setattr(discovery, "time", SimpleNamespace(perf_counter=lambda: next(moments)))
+
+
 @pytest.fixture
-def module(answer_port: int) -> Iterator[str]:
-    """A simulated module; its address."""
+def module(answer_port: int, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    """A simulated module, which answers both requests; its address."""
+    listen_to(len(REQUESTS), monkeypatch)
     server = Server(build_simulation([1]))
     door = server.open_discovery("127.0.0.1", 0, answer_port)
     with running(server):
@@ -50,7 +61,7 @@ def test_the_bytes_of_the_call() -> None:
 
 
 def test_a_module_answers_and_is_told_once(module: str, cli: Cli) -> None:
-    done = cli("scan", "--network", module, "--timeout", "0.5")
+    done = cli("scan", "--network", module, "--timeout", GUARD_S)
     assert done.code == 0
     head, *lines = done.out.splitlines()
     assert head == "127.0.0.1  351 bytes; their meaning is not documented:"
@@ -60,7 +71,7 @@ def test_a_module_answers_and_is_told_once(module: str, cli: Cli) -> None:
 
 
 def test_the_document_keeps_every_byte(module: str, cli: Cli) -> None:
-    document = cli("scan", "--network", module, "--timeout", "0.5", "--json").document("network")
+    document = cli("scan", "--network", module, "--timeout", GUARD_S, "--json").document("network")
     (answer,) = document["answers"]
     assert bytes.fromhex(answer["hex"]) == ANSWER
     assert (answer["address"], answer["bytes"]) == ("127.0.0.1", 351)
@@ -81,9 +92,10 @@ def test_nobody_there(answer_port: int, cli: Cli) -> None:
     assert heard == list(REQUESTS)  # the call, once, and nothing else
 
 
-def test_an_answer_of_anybody_is_kept_as_it_is(answer_port: int) -> None:
+def test_an_answer_of_anybody_is_kept_as_it_is(answer_port: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Short ones too; the same one twice and the call itself, as a broadcast brings it back, are left out."""
     said = (b"\0" * 400, b"short", b"short", REQUESTS[0], REQUESTS[1], b"")
+    listen_to(len(said), monkeypatch)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as module:
         module.bind(("127.0.0.1", 0))
         module.settimeout(5)
@@ -95,7 +107,7 @@ def test_an_answer_of_anybody_is_kept_as_it_is(answer_port: int) -> None:
 
         thread = threading.Thread(target=answers)
         thread.start()
-        found = discover("127.0.0.1", int(module.getsockname()[1]), listen_s=1.0, answer_port=answer_port)
+        found = discover("127.0.0.1", int(module.getsockname()[1]), listen_s=GUARD_S, answer_port=answer_port)
         thread.join()
     assert [answer.data for answer in found] == [b"\0" * 400, b"short", b""]
 
