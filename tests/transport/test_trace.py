@@ -285,7 +285,7 @@ def test_other_names_are_refused(tmp_path: Path, name: str) -> None:
 def test_a_file_that_cannot_be_written(tmp_path: Path, suffix: str) -> None:
     with pytest.raises(UsageError, match=r"cannot write the trace .*: No such file or directory"):
         open_trace(tmp_path / "nowhere" / f"line{suffix}", "facon")
-    with pytest.raises(UsageError, match=r"cannot write the trace "):
+    with pytest.raises(UsageError, match=r"cannot write the trace |a file name cannot contain"):
         open_trace(tmp_path / f"a\0b{suffix}", "facon")
 
 
