@@ -1,4 +1,4 @@
-"""Death at every step: SIGKILL, a power cut, a full disk. What is left is whole, the same command goes on."""
+"""Death at any step: SIGKILL, a power cut, a full disk. What is left is whole, the same command goes on."""
 
 from __future__ import annotations
 
