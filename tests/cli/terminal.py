@@ -65,6 +65,11 @@ class Terminal:
         while words not in self.text:
             self.raw += os.read(self.master, 65536).decode(errors="replace")
 
+    def read_until_like(self, pattern: str) -> None:
+        """Read until a regular expression is on it."""
+        while not re.search(pattern, self.text):
+            self.raw += os.read(self.master, 65536).decode(errors="replace")
+
     def type(self, keys: str) -> None:
         os.write(self.master, keys.encode())
 

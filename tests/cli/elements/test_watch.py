@@ -138,7 +138,8 @@ def test_the_table(columns: int) -> None:
         change_round_by_round(memory)
         words = ["watch", "R0", "R5", "D4:f32", "M0", "R9000", "--interval", "0.01", "-p", door.target]
         with Terminal(*words, columns=columns, lines=20, PYTHONUTF8="1") as terminal:
-            terminal.read_until("▁▂▃▄▅▆▇█"[: 8 if columns > 40 else 1])
+            # On a busy machine a round may not be drawn, and then no trend has exactly one of each.
+            terminal.read_until_like("▁+▂+▃+▄+▅+▆+▇+█+" if columns > 40 else "▁")
             terminal.read_until("*")
             terminal.type("\x03")
             assert terminal.end() == 130
