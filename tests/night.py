@@ -25,7 +25,8 @@ _SHARE = 4
 _LEAST = 10
 _FEW = 3
 _FOLDERS_OF_FEW = [
-    ROOT / "tests" / name for name in ("protocol", "planner", "program", "jobs", "simulator/slaves")
+    ROOT / "tests" / name
+    for name in ("protocol", "planner", "program", "jobs", "exchange", "simulator/slaves")
 ]
 """The tests in them use nothing of the system, or nothing that differs between the rows of one test."""
 
