@@ -108,11 +108,16 @@ def records_of(target: str, station: int) -> Iterator[Found]:
     here = [name] * (name in names) + of_values
     for each in here:
         yield Found(f"{folder}/{each}", load(f"{folder}/{each}"))
-    for each in names:
+    for each in names if _may_move(target) else ():
         if f"-st{station:02}-" in each and each not in here:
             record = load(f"{folder}/{each}")
             if record is not None and (record.target, record.station) == (target, station):
                 yield Found(f"{folder}/{each}", record)
+
+
+def _may_move(target: str) -> bool:
+    """True if a target names a serial port by something else than its device: a link, a search."""
+    return Target.parse(target).kind is TargetKind.SERIAL and line_name(target) != target
 
 
 def record_to_use(target: str, station: int, *about: str) -> str | None:

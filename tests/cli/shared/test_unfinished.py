@@ -151,6 +151,19 @@ def test_an_adapter_that_was_plugged_in_again_is_the_same(tmp_path: Path, state_
     assert record_to_use(target, 2) == record_of(target, 2)
 
 
+def test_records_of_other_plcs_are_not_read(
+    press: Press, cli: Cli, door: Door, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each command would pay for it, as long as there is one."""
+    fail(cli, press, door)
+    read: list[str | None] = []
+    monkeypatch.setattr("fatektool.cli.shared.unfinished.load", read.append)
+    assert unfinished("tcp://127.0.0.1:1", 1) == unfinished("/dev/ttyUSB0", 1) == []
+    assert not read
+    unfinished(door.target, 1)
+    assert len(read) == 1
+
+
 def test_verify_that_finds_it_whole_clears_it(press: Press, cli: Cli, door: Door, state_folder: Path) -> None:
     fail(cli, press, door)
     assert cli("verify", press.old, "-p", door.target).code == 1
